@@ -1,0 +1,40 @@
+#pragma once
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace wale {
+
+/// Exit status of the program, by whose fault it is.
+enum class Fault { user = 1, device = 2, bug = 3 };
+
+/// Every failure leaves as one of these; `what()` is one line: file, place, what is wrong, the nearest valid choice.
+class Error : public std::runtime_error {
+ public:
+  Error(Fault fault, const std::string& line) : std::runtime_error(line), fault_(fault) {}
+  Fault fault() const { return fault_; }
+
+ private:
+  Fault fault_;
+};
+
+/// Throws an Error that the user can mend (exit status 1).
+template <typename... Args>
+[[noreturn]] void user_error(fmt::format_string<Args...> format, Args&&... args) {
+  throw Error(Fault::user, fmt::format(format, std::forward<Args>(args)...));
+}
+
+/// Throws an Error of the device or its driver (exit status 2).
+template <typename... Args>
+[[noreturn]] void device_error(fmt::format_string<Args...> format, Args&&... args) {
+  throw Error(Fault::device, fmt::format(format, std::forward<Args>(args)...));
+}
+
+/// Throws an Error that is Wale's own fault (exit status 3).
+template <typename... Args>
+[[noreturn]] void bug(fmt::format_string<Args...> format, Args&&... args) {
+  throw Error(Fault::bug, fmt::format(format, std::forward<Args>(args)...));
+}
+
+}  // namespace wale

@@ -1,0 +1,44 @@
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "geom/stitch.h"
+
+namespace wale {
+
+/// How plies lie in a yarn, in the cloth (after the tile has been scaled).
+struct YarnSpec {
+  int plies = 3;            ///< 1 to 8
+  double twist = 0;         ///< turns per metre of yarn, positive = right-handed helix (Z twist); 0 allowed
+  double ply_radius = 0;    ///< metres, the traced tube
+  double helix_radius = 0;  ///< metres from the yarn axis to a ply axis (0 for one ply)
+  double phase = 0;         ///< radians
+  double tolerance = 0.02;  ///< largest distance of a ply polyline from its curve, in ply radii
+};
+
+/// Ply and helix radius of n equal circles that fill a yarn of the given radius and touch their neighbours.
+/// Circle packing on a ring: r = R s/(1+s), s = sin(pi/n); n = 1 gives r = R.
+void fill_yarn(YarnSpec& spec, double yarn_radius);
+
+/// One full yarn of the flat knit. K samples; ply arrays are ply-major, [ply*K + k].
+/// A closed yarn repeats itself at both ends by one ghost sample: sample 0 is sample K-3 displaced back and sample K-1
+/// is sample 2 displaced forward (sample K-2 equals sample 1 displaced), so that every traced joint has two real neighbours.
+struct FlatYarn {
+  bool closed = false;
+  std::vector<dvec3> centre;     ///< yarn axis, metres in the cloth: x course, y wale, z through the fabric
+  std::vector<dvec3> position;   ///< ply axes
+  std::vector<dvec3> normal;     ///< unit, perpendicular to the ply's mean tangent: double-reflection frame of the ply
+  std::vector<double> length;    ///< metres of ply from the start of the full yarn (rest length)
+};
+
+/// Samples of one tile, the same in every instance: chosen by arc length so that the twisted ply polylines stay within
+/// spec.tolerance of their curves. `scale` takes pattern metres to cloth metres in x, y and z.
+/// Yarns are delivered one at a time, in the order of stitch(); the first link's instance tells where it lies.
+/// Deterministic; frames by double reflection (Wang et al. 2008), closing twist of closed yarns spread over their length.
+void knit_flat(const Pattern& pattern, const PartnerMap& partners, const YarnSpec& spec, dvec3 scale,
+               const InstanceRect& rect, const std::function<void(FlatYarn&&)>& deliver);
+
+/// Number of samples that one tile's yarns take under knit_flat; for size estimates before anything is allocated.
+long samples_per_tile(const Pattern& pattern, const PartnerMap& partners, const YarnSpec& spec, dvec3 scale);
+
+}  // namespace wale

@@ -1,0 +1,78 @@
+#include "host/device.h"
+
+#include <algorithm>
+
+#include "geom/error.h"
+
+namespace wale {
+namespace {
+
+std::vector<cl::Device> all_devices() {
+  std::vector<cl::Device> devices;
+  std::vector<cl::Platform> platforms;
+  try {
+    cl::Platform::get(&platforms);
+  } catch (const cl::Error&) {
+    return devices;  // the loader reports "no platform" as an error
+  }
+  for (const auto& platform : platforms) {
+    std::vector<cl::Device> found;
+    try {
+      platform.getDevices(CL_DEVICE_TYPE_ALL, &found);
+    } catch (const cl::Error&) {
+      continue;
+    }
+    devices.insert(devices.end(), found.begin(), found.end());
+  }
+  return devices;
+}
+
+DeviceTraits traits_of(const cl::Device& device) {
+  DeviceTraits t;
+  t.name = device.getInfo<CL_DEVICE_NAME>();
+  t.vendor = device.getInfo<CL_DEVICE_VENDOR>();
+  t.driver = device.getInfo<CL_DRIVER_VERSION>();
+  t.version = device.getInfo<CL_DEVICE_VERSION>();
+  t.platform = cl::Platform(device.getInfo<CL_DEVICE_PLATFORM>()).getInfo<CL_PLATFORM_NAME>();
+  t.cpu = device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU;
+  t.fp64 = device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") != std::string::npos;
+  t.global_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+  t.max_alloc_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+  t.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+  // Explicit vectors pay on CPUs; GPUs run one ray per work-item in scalar code.
+  const unsigned native = device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
+  t.lanes = !t.cpu ? 1 : native >= 16 ? 16 : native >= 8 ? 8 : 1;
+  t.pool = t.cpu ? 1u << 16 : 1u << 21;
+  t.local_size = std::min<size_t>(64, device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>());
+  return t;
+}
+
+}  // namespace
+
+std::vector<DeviceTraits> Device::list() {
+  std::vector<DeviceTraits> traits;
+  for (const auto& device : all_devices()) traits.push_back(traits_of(device));
+  return traits;
+}
+
+Device Device::open(unsigned index) {
+  const auto devices = all_devices();
+  if (devices.empty())
+    device_error(
+        "OpenCL: no device found; install a CPU device with `apt-get install pocl-opencl-icd`, or your GPU's driver");
+  if (index >= devices.size())
+    user_error("--device {}: there is no such device; valid: 0 to {} (see `wale devices`)", index, devices.size() - 1);
+  Device d;
+  d.device_ = devices[index];
+  d.traits_ = traits_of(d.device_);
+  d.context_ = cl::Context(d.device_);
+  d.queue_ = cl::CommandQueue(d.context_, d.device_, CL_QUEUE_PROFILING_ENABLE);
+  return d;
+}
+
+cl::NDRange Device::global(size_t items) const {
+  const size_t group = traits_.local_size;
+  return cl::NDRange(std::max<size_t>(1, (items + group - 1) / group) * group);
+}
+
+}  // namespace wale

@@ -1,0 +1,75 @@
+#pragma once
+#include <CL/opencl.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace wale {
+
+/// What a device is and what Wale chooses for it; the one table of device traits.
+struct DeviceTraits {
+  std::string name, vendor, driver, platform, version;
+  bool cpu = true;
+  bool fp64 = false;
+  uint64_t global_bytes = 0, max_alloc_bytes = 0;
+  unsigned compute_units = 1;
+  unsigned lanes = 1;        ///< width of explicit vectors: 1, 8 or 16 (W_LANES)
+  uint32_t pool = 1u << 16;  ///< paths in flight
+  unsigned local_size = 64;  ///< work-group size of every kernel
+};
+
+/// An OpenCL device with its context and one in-order queue. Passed explicitly, never global.
+class Device {
+ public:
+  /// Opens device number `index` of list(). Throws a device error that names the package to install when there is none,
+  /// or a user error that lists the valid numbers.
+  static Device open(unsigned index = 0);
+  static std::vector<DeviceTraits> list();
+
+  const DeviceTraits& traits() const { return traits_; }
+  DeviceTraits& traits() { return traits_; }
+  const cl::Context& context() const { return context_; }
+  const cl::CommandQueue& queue() const { return queue_; }
+  const cl::Device& id() const { return device_; }
+
+  /// Rounds a global size up to a multiple of the work-group size.
+  cl::NDRange global(size_t items) const;
+  cl::NDRange local() const { return cl::NDRange(traits_.local_size); }
+
+ private:
+  DeviceTraits traits_;
+  cl::Device device_;
+  cl::Context context_;
+  cl::CommandQueue queue_;
+};
+
+/// A buffer of T on the device; never empty (at least one element is allocated), so that it can always be an argument.
+template <typename T>
+class Buffer {
+ public:
+  Buffer() = default;
+  Buffer(const Device& device, size_t count) : count_(count) {
+    buffer_ = cl::Buffer(device.context(), CL_MEM_READ_WRITE, bytes());
+  }
+  Buffer(const Device& device, const std::vector<T>& data) : Buffer(device, data.size()) { write(device, data); }
+
+  void write(const Device& device, const std::vector<T>& data) {
+    if (!data.empty()) device.queue().enqueueWriteBuffer(buffer_, CL_TRUE, 0, data.size() * sizeof(T), data.data());
+  }
+  std::vector<T> read(const Device& device) const {
+    std::vector<T> data(count_);
+    if (count_) device.queue().enqueueReadBuffer(buffer_, CL_TRUE, 0, count_ * sizeof(T), data.data());
+    return data;
+  }
+  void fill(const Device& device, T value) { device.queue().enqueueFillBuffer(buffer_, value, 0, bytes()); }
+  size_t count() const { return count_; }
+  size_t bytes() const { return (count_ ? count_ : 1) * sizeof(T); }
+  const cl::Buffer& cl() const { return buffer_; }
+
+ private:
+  size_t count_ = 0;
+  cl::Buffer buffer_;
+};
+
+}  // namespace wale

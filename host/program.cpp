@@ -1,0 +1,84 @@
+#include "host/program.h"
+
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "geom/error.h"
+#include "host/kernel_sources.h"
+
+namespace wale {
+namespace {
+
+std::string kernel_text(const std::string& file, const std::filesystem::path& kernel_dir) {
+  if (!kernel_dir.empty()) {
+    std::ifstream in(kernel_dir / file, std::ios::binary);
+    if (!in) user_error("{}: cannot read this kernel file", (kernel_dir / file).string());
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  const auto& all = embedded_kernels();
+  const auto found = all.find(file);
+  if (found == all.end()) bug("kernels/{}: not built into the program", file);
+  return found->second;
+}
+
+// Every include is expanded at its first mention: NVIDIA's binary cache looks at the top-level source only, and the
+// embedded files have no folder to search.
+void expand(const std::string& text, const std::string& file, const std::filesystem::path& kernel_dir,
+            std::set<std::string>& done, std::string& out) {
+  out += fmt::format("#line 1 \"{}\"\n", file);
+  std::istringstream in(text);
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    const auto hash = line.find_first_not_of(" \t");
+    if (hash != std::string::npos && line.compare(hash, 10, "#include \"") == 0) {
+      const auto from = hash + 10, to = line.find('"', from);
+      const std::string name = line.substr(from, to - from);
+      if (done.insert(name).second) {
+        expand(kernel_text(name, kernel_dir), name, kernel_dir, done, out);
+        out += fmt::format("#line {} \"{}\"\n", number + 1, file);
+      } else {
+        out += '\n';
+      }
+    } else {
+      out += line;
+      out += '\n';
+    }
+  }
+}
+
+cl::Program compile(const Device& device, const std::string& source, const std::string& file, std::string options) {
+  options += " -cl-std=CL1.2";
+  if (options.find("W_LANES") == std::string::npos) options += fmt::format(" -DW_LANES={}", device.traits().lanes);
+  cl::Program program(device.context(), source);
+  try {
+    program.build({device.id()}, options.c_str());
+  } catch (const cl::Error&) {
+    device_error("kernels/{}: does not compile for {} with{}\n{}", file, device.traits().name, options,
+                 program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.id()));
+  }
+  return program;
+}
+
+}  // namespace
+
+std::string expand_kernel_source(const std::string& file, const std::filesystem::path& kernel_dir) {
+  std::set<std::string> done{file};
+  std::string out;
+  expand(kernel_text(file, kernel_dir), file, kernel_dir, done, out);
+  return out;
+}
+
+cl::Program build_program(const Device& device, const std::string& file, const std::string& options,
+                          const std::filesystem::path& kernel_dir) {
+  return compile(device, expand_kernel_source(file, kernel_dir), file, options);
+}
+
+cl::Program build_program_text(const Device& device, const std::string& text, const std::string& options) {
+  std::set<std::string> done;
+  std::string out;
+  expand(text, "test.cl", {}, done, out);
+  return compile(device, out, "test.cl", options);
+}
+
+}  // namespace wale
