@@ -1,0 +1,143 @@
+#pragma once
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geom/fabric.h"
+
+namespace wale {
+
+using Rgb = std::array<double, 3>;
+
+/// Scale, then rotation about x, y, z (radians), then translation (metres).
+struct Transform {
+  double scale = 1;
+  dvec3 rotate{0, 0, 0};
+  dvec3 translate{0, 0, 0};
+};
+
+/// A mesh: a file, or one of the bundled generators with its sizes (metres).
+struct MeshSource {
+  std::filesystem::path file;  ///< absolute; empty when generated
+  std::string generator;       ///< swatch, tube, pillow, beanie, draped_square
+  double width = 0, height = 0, radius = 0, thickness = 0, size = 0, sphere_radius = 0;
+  int nu = 0, nv = 0;
+};
+
+struct PatternSource {
+  std::filesystem::path file;  ///< absolute; empty when built in
+  std::string builtin;         ///< "stockinette"
+  PatternHints hints;
+};
+
+/// Appearance of plies: a preset, then what the scene overrides. Colours are scene-linear Rec. 709 in [0,1].
+struct PlyAppearance {
+  std::string preset = "wool";  ///< cotton, wool, silk, polyester
+  std::optional<Rgb> color;             ///< fibre colour C_f
+  std::optional<Rgb> forward, back;     ///< body colours directly (both or none)
+  std::optional<double> roughness;      ///< beta_R, radians
+  std::optional<double> ior;
+  std::optional<double> optical_radius; ///< tau_e
+  std::optional<double> fibre_twist;    ///< angle of the surface fibres to the ply axis, radians, signed
+};
+
+struct SurfaceAppearance {
+  bool coated = false;
+  Rgb color{0.5, 0.5, 0.5};
+  double roughness = 0.3;  ///< of the coat
+  double ior = 1.5;
+};
+
+struct MaterialSpec {
+  std::string name;
+  bool ply = false;
+  PlyAppearance yarn;
+  SurfaceAppearance surface;
+};
+
+struct FabricScene {
+  FabricSpec spec;
+  MeshSource mesh;
+  Transform transform;
+  PatternSource pattern;
+  int material = 0;  ///< index into Scene::materials, a ply material
+};
+
+/// A prop: mesh, sphere or an endless-looking ground quad.
+struct ObjectScene {
+  enum class Kind { mesh, sphere, ground } kind = Kind::mesh;
+  std::string name;
+  MeshSource mesh;
+  Transform transform;
+  dvec3 center{0, 0, 0};
+  double radius = 1;        ///< sphere, metres
+  double height = 0;        ///< ground: along `up`
+  double extent = 10;       ///< ground: half size, metres
+  dvec3 up{0, 1, 0};        ///< ground
+  int material = 0;         ///< a surface material
+};
+
+struct LightScene {
+  enum class Kind { quad, sphere, mesh, environment } kind = Kind::quad;
+  Rgb radiance{1, 1, 1};             ///< W/(m^2 sr), times intensity already applied
+  dvec3 position{0, 0, 0}, look_at{0, 0, 0}, up{0, 1, 0};
+  double width = 1, height = 1;      ///< quad
+  bool two_sided = false;            ///< quad: else only towards look_at
+  double radius = 1;                 ///< sphere
+  MeshSource mesh;
+  Transform transform;
+  std::filesystem::path file;        ///< environment image; empty = constant radiance
+  double rotation = 0;               ///< environment: radians about its up axis
+  dvec3 env_up{0, 1, 0};
+};
+
+struct CameraScene {
+  bool orthographic = false;
+  dvec3 position{0, 0, 1}, look_at{0, 0, 0}, up{0, 1, 0};
+  double fov = 0.6;           ///< vertical, radians
+  double height = 1;          ///< orthographic: metres
+  double aperture = 0;        ///< lens radius, metres
+  double focus = 0;           ///< metres; 0 = distance to look_at
+};
+
+struct FilmScene {
+  int width = 768, height = 768;
+  double exposure = 0;           ///< stops
+  std::string view = "neutral";  ///< neutral, srgb
+  std::string filter = "tent";   ///< tent, box
+};
+
+struct IntegratorScene {
+  int spp = 64;
+  int max_depth = 0;                   ///< scattering events; 0 = unlimited
+  int russian_roulette_depth = 4;
+  std::string light_sampling = "mis";  ///< mis, light, bsdf
+  std::string local_stage = "exact";   ///< exact, cell, cell+ring
+  int lanes = 0;                       ///< 0 = from the device; 1, 8, 16
+  unsigned pool = 0;                   ///< paths in flight; 0 = from the device
+  unsigned seed = 0;
+};
+
+/// A whole scene in SI units (metres, radians), colours linear. Materials are referred to by index.
+struct Scene {
+  std::string file;
+  CameraScene camera;
+  FilmScene film;
+  IntegratorScene integrator;
+  std::vector<MaterialSpec> materials;
+  std::vector<FabricScene> fabrics;
+  std::vector<ObjectScene> objects;
+  std::vector<LightScene> lights;
+};
+
+/// Reads a scene file strictly. Throws a user error "file:line:column: ..." with the nearest valid choice on unknown
+/// keys, wrong types, values out of range, unresolved names. `overrides` are "key.path=value" (--set), applied before
+/// checking; they may name array elements by index or by "name".
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+/// The JSON Schema (draft 2020-12) of scene files, from the same table that read_scene checks against.
+std::string scene_schema();
+
+}  // namespace wale
