@@ -16,6 +16,7 @@ struct BaseMesh {
   std::vector<dvec3> normal;                       ///< unit, per vertex, angle weighted
   std::vector<std::array<uint32_t, 3>> triangle;   ///< vertex indices
   std::vector<std::array<dvec2, 3>> uv;            ///< per triangle corner; empty when the file carries none
+  size_t polygons_split = 0;                       ///< faces of more than three corners that were fanned
 };
 
 /// What validation found; nothing here is fatal.
@@ -29,8 +30,9 @@ struct MeshReport {
   dvec2 stretch_median{0, 0};        ///< singular values of UV -> space
 };
 
-/// Reads OBJ, PLY or OFF in double through OpenMesh. Throws a user error naming the file: missing, not a mesh, no
-/// faces, NaN or infinite vertices. Meshes without UV are accepted here (props) and refused by require_uv.
+/// Reads OBJ (in double), PLY or OFF (through OpenMesh, which reads both in float). Lengths are taken as metres. Throws a
+/// user error naming the file: missing, not a mesh, no faces, NaN or infinite vertices, a face that names no vertex.
+/// Meshes without UV are accepted here (props) and refused by require_uv.
 BaseMesh read_mesh(const std::filesystem::path& file);
 
 /// Throws the user error that a fabric needs: no UV, or every UV triangle of zero area.

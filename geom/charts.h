@@ -11,7 +11,7 @@ struct Chart {
   std::vector<uint32_t> triangles;
   dvec2 uv_min{0, 0}, uv_max{0, 0};
   dvec2 metres_per_uv{1, 1};           ///< area-weighted mean of |dP/du|, |dP/dv|
-  std::vector<dvec2> joins;            ///< translations T such that uv and uv+T lie on the two sides of a seam (T and -T once)
+  std::vector<dvec2> joins;            ///< translations T: uv and uv+T are the two sides of a seam (T and -T once)
   bool mirrored = false;               ///< most of its triangles are clockwise in UV
 };
 
@@ -30,8 +30,8 @@ struct ChartPoint {
 class ChartLocator {
  public:
   ChartLocator(const BaseMesh& mesh, const Chart& chart);
-  /// The triangle that holds uv, also across the chart's joins; else the nearest border triangle, extrapolated, when it
-  /// lies within `reach` (in units of the given metric: |du * metric.x|, |dv * metric.y|). False when neither.
+  /// The triangle that holds uv, also across the chart's joins; else the border triangle within `reach` (in units of
+  /// the metric: |du * metric.x|, |dv * metric.y|) whose linear extrapolation is shortest. False when neither.
   bool locate(dvec2 uv, double reach, dvec2 metric, ChartPoint& out) const;
 
  private:

@@ -75,19 +75,20 @@ struct Fabric {
   double ply_radius = 0, yarn_radius = 0;     ///< metres in the cloth
   BaseMesh mesh;
   std::vector<Chart> charts;
-  std::vector<dvec2> uv_per_metre;            ///< per chart: UV = uv_origin + uv_per_metre * (x, y)
+  std::vector<dvec2> uv_per_metre;            ///< per chart: UV = uv_per_metre * (x, y), (x, y) in the flat knit
   std::vector<PlyRun> runs;
   std::vector<Anchor> anchors;                ///< per vertex
   std::vector<uint32_t> chart_of_triangle;
   std::vector<Patch> patches;                 ///< sorted by cell
   std::vector<UvGrid> grids;                  ///< per chart
   Csr cell_triangles;                         ///< triangles that cover the cell (UV overlap)
-  Csr cell_segments;                          ///< segments that touch the cell, with duplicates; item = vertex id of the segment's start
+  Csr cell_segments;                          ///< segments that touch the cell: vertex ids of their starts
   struct Report {
     size_t full_yarns = 0, runs = 0, plies = 0, segments = 0, vertices = 0;
     size_t samples_outside = 0;      ///< yarn samples beyond the half-stitch margin, not traced
     size_t samples_extrapolated = 0; ///< in the margin
-    double worst_partner_distance = 0;
+    size_t jumps_cut = 0;            ///< places where a yarn was cut because its chart folds back beside itself in UV
+    double worst_partner_distance = 0;  ///< metres in the pattern
     std::vector<ivec2> snapped_repeats;  ///< per joined chart, whole tiles across the join
     dvec2 tile_metres{0, 0};         ///< size of one tile in the cloth
     dvec2 stitch_metres{0, 0};
@@ -95,7 +96,7 @@ struct Fabric {
   } report;
 };
 
-/// Bytes that the fabric would take on the host and on the device; computed before anything is allocated.
+/// Ply segments that the fabric would have, to a few per cent; computed before anything is allocated.
 size_t estimate_segments(const BaseMesh& mesh, const Pattern& pattern, const FabricSpec& spec);
 
 /// Knits the pattern over the mesh: charts, scale, tiling and stitching, plies, cutting at borders (half a stitch past

@@ -21,9 +21,10 @@ struct WideTree {
 
 /// Builds the tree over items (patches, or leaves of triangles). `leaf_code` is stored as child code of item i with
 /// W_CHILD_LEAF set. Items of one group (UV cell; `group` non-decreasing, empty = no groups) hang below one node
-/// flagged W_CHILD_CELL; `group_box` (may be empty) is joined to the bounds of the group, so that the base triangles of a
-/// cell are inside too. Binned SAH, collapsed greedily to width 16; deterministic for any thread count.
-WideTree build_wide_tree(std::span<const Box> boxes, std::span<const uint32_t> leaf_code, std::span<const uint32_t> group,
-                         std::span<const Box> group_box);
+/// flagged W_CHILD_CELL; `group_box` (may be empty) is joined to the bounds of the group, so that the base triangles of
+/// a cell are inside too; it is indexed by cell number. Binned SAH, collapsed to width 16 at the least summed node
+/// area; deterministic.
+WideTree build_wide_tree(std::span<const Box> boxes, std::span<const uint32_t> leaf_code,
+                         std::span<const uint32_t> group, std::span<const Box> group_box);
 
 }  // namespace wale

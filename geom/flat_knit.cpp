@@ -1,0 +1,116 @@
+#include "geom/flat_knit.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "geom/cycle_samples.h"
+#include "geom/error.h"
+#include "geom/ply_frames.h"
+
+namespace wale {
+namespace {
+
+constexpr double kTwoPi = 2 * std::numbers::pi;
+
+/// Lays the tile's samples along full yarns.
+class Layer {
+ public:
+  Layer(const Pattern& pattern, const TileSamples& tile, const YarnSpec& spec, dvec3 scale)
+      : tile_(tile), spec_(spec), period_(pattern.period.x * scale.x, pattern.period.y * scale.y, 0) {
+    for (int ply = 0; ply < spec.plies; ++ply) {
+      cos_.push_back(std::cos(kTwoPi * ply / spec.plies));
+      sin_.push_back(std::sin(kTwoPi * ply / spec.plies));
+    }
+  }
+
+  FlatYarn lay(const YarnChain& chain, ivec2 end_instance, int end_curve) {
+    FlatYarn yarn;
+    yarn.closed = chain.closed;
+    size_t count = chain.closed ? 3 : 1;
+    for (const Link& link : chain.links) count += tile_.of_curve[link.curve].centre.size();
+    yarn.centre.resize(count);
+    yarn.position.resize(count * spec_.plies);
+
+    const LinkSamples& first = tile_.of_curve[chain.links[0].curve];
+    const CycleSamples& cycle = tile_.cycles[first.cycle];
+    start_ = first.arc[0];
+    correction_ = chain.closed ? closing_correction(chain, cycle) : 0;
+    size_t at = chain.closed ? 1 : 0;
+    int pass = 0;
+    for (const Link& link : chain.links) {
+      const LinkSamples& samples = tile_.of_curve[link.curve];
+      for (size_t i = 0; i < samples.centre.size(); ++i) put(yarn, at++, samples, i, link.instance, pass, cycle);
+      if (samples.order + 1 == cycle.links) ++pass;
+    }
+    if (!chain.closed) {
+      put(yarn, at, tile_.of_curve[end_curve], 0, end_instance, pass, cycle);
+    } else {
+      add_ghosts(yarn, dvec3(chain.shift.x, chain.shift.y, 0) * period_);
+    }
+    frame_plies(yarn, spec_.plies);
+    return yarn;
+  }
+
+ private:
+  /// Radians per metre that bring twist and frame of a closed yarn back to whole turns.
+  double closing_correction(const YarnChain& chain, const CycleSamples& cycle) const {
+    const double passes = double(chain.links.size()) / cycle.links;
+    const double length = passes * cycle.length;
+    const double angle = kTwoPi * spec_.twist * length + passes * cycle.turn;
+    return (kTwoPi * std::round(angle / kTwoPi) - angle) / length;
+  }
+
+  /// Sample i of a link: the axis, and each ply at centre + helix_radius (cos a N + sin a B),
+  /// a = phase + 2 pi (twist s + ply / plies), N and B turned by pass * cycle.turn.
+  void put(FlatYarn& yarn, size_t at, const LinkSamples& samples, size_t i, ivec2 instance, int pass,
+           const CycleSamples& cycle) const {
+    const dvec3 centre = samples.centre[i] + dvec3(instance.x, instance.y, 0) * period_;
+    yarn.centre[at] = centre;
+    const double s = pass * cycle.length + samples.arc[i] - start_;
+    const double angle = spec_.phase + (kTwoPi * spec_.twist + correction_) * s + pass * cycle.turn;
+    const double c = spec_.helix_radius * std::cos(angle), d = spec_.helix_radius * std::sin(angle);
+    const dvec3 out = c * samples.normal[i] + d * samples.binormal[i];
+    const dvec3 side = c * samples.binormal[i] - d * samples.normal[i];
+    const size_t count = yarn.centre.size();
+    for (int ply = 0; ply < spec_.plies; ++ply)
+      yarn.position[ply * count + at] = centre + cos_[ply] * out + sin_[ply] * side;
+  }
+
+  void add_ghosts(FlatYarn& yarn, dvec3 displacement) const {
+    const size_t count = yarn.centre.size();
+    const auto repeat = [&](dvec3* p) {
+      p[count - 2] = p[1] + displacement;
+      p[count - 1] = p[2] + displacement;
+      p[0] = p[count - 3] - displacement;
+    };
+    repeat(yarn.centre.data());
+    for (int ply = 0; ply < spec_.plies; ++ply) repeat(&yarn.position[ply * count]);
+  }
+
+  const TileSamples& tile_;
+  const YarnSpec& spec_;
+  dvec3 period_;
+  std::vector<double> cos_, sin_;
+  double start_ = 0, correction_ = 0;
+};
+
+}  // namespace
+
+void knit_flat(const Pattern& pattern, const PartnerMap& partners, const YarnSpec& spec, dvec3 scale,
+               const InstanceRect& rect, const std::function<void(FlatYarn&&)>& deliver) {
+  const TileSamples tile = sample_tile(pattern, partners, spec, scale, rect.wrap);
+  Layer layer(pattern, tile, spec, scale);
+  for (const YarnChain& chain : stitch(pattern, partners, rect)) {
+    const Link& last = chain.links.back();
+    ivec2 end_instance = last.instance;
+    int end_curve = last.curve;
+    if (!chain.closed) {
+      const Partner& on = partners.of[last.curve][last.reversed ? 0 : 1];
+      end_instance += on.shift;
+      end_curve = on.to.curve;
+    }
+    deliver(layer.lay(chain, end_instance, end_curve));
+  }
+}
+
+}  // namespace wale

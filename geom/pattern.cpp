@@ -1,0 +1,89 @@
+#include "geom/pattern.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geom/error.h"
+#include "geom/pattern_readers.h"
+
+namespace wale {
+namespace {
+
+bool finite(const dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+void check_hints(const std::filesystem::path& file, const PatternHints& hints) {
+  for (const double value : {hints.period.x, hints.period.y, hints.yarn_radius, hints.unit})
+    if (!(value >= 0) || !std::isfinite(value))
+      user_error("{}: period, yarn radius and unit given for it must be positive (0 = take from the file), not {}",
+                 file.string(), value);
+  if (hints.stitches.x < 0 || hints.stitches.y < 0)
+    user_error("{}: stitches given for it must be positive (0 = estimate), not {} x {}", file.string(),
+               hints.stitches.x, hints.stitches.y);
+}
+
+void check_curve(const std::filesystem::path& file, const PatternCurve& curve, size_t index) {
+  const size_t least = curve.closed ? 3 : 2;
+  if (curve.points.size() < least)
+    user_error("{}: curve {}: has {} points; at least {} are needed", file.string(), index, curve.points.size(), least);
+  double length = 0;
+  for (size_t i = 0; i < curve.points.size(); ++i) {
+    if (!finite(curve.points[i])) user_error("{}: curve {}: point {} is not finite", file.string(), index, i);
+    if (i > 0) length += glm::distance(curve.points[i - 1], curve.points[i]);
+  }
+  if (!(length > 0)) user_error("{}: curve {}: all points coincide", file.string(), index);
+}
+
+void check_pattern(const std::filesystem::path& file, const Pattern& pattern) {
+  const dvec2 period = pattern.period;
+  if (!(period.x > 0 && period.y > 0) || !std::isfinite(period.x) || !std::isfinite(period.y))
+    user_error("{}: the period is {} x {} m; both must be positive", file.string(), period.x, period.y);
+  if (!(pattern.yarn_radius > 0) || !std::isfinite(pattern.yarn_radius))
+    user_error("{}: the yarn radius is {} m; it must be positive", file.string(), pattern.yarn_radius);
+  if (pattern.curves.empty()) user_error("{}: the tile has no curves", file.string());
+  for (size_t c = 0; c < pattern.curves.size(); ++c) check_curve(file, pattern.curves[c], c);
+}
+
+}  // namespace
+
+Pattern read_pattern(const std::filesystem::path& file, const PatternHints& hints) {
+  check_hints(file, hints);
+  std::string suffix = file.extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
+  Pattern pattern;
+  if (suffix == ".pyp") {
+    pattern = read_pyp(file, hints);
+  } else if (suffix == ".txt") {
+    pattern = read_leaf(file, hints);
+  } else if (suffix == ".bcc") {
+    pattern = read_bcc(file, hints);
+  } else if (suffix == ".json") {
+    pattern = read_pattern_json(file, hints);
+  } else {
+    user_error("{}: no pattern format has the suffix '{}'; it is one of .pyp, .txt, .bcc, .json", file.string(),
+               suffix);
+  }
+  // Some writers end a ring with its first point; the spline closes it by itself.
+  for (PatternCurve& curve : pattern.curves)
+    if (curve.closed && curve.points.size() > 1 && curve.points.front() == curve.points.back()) curve.points.pop_back();
+  if (pattern.name.empty()) pattern.name = file.stem().string();
+  check_pattern(file, pattern);
+  if (hints.stitches.x > 0) pattern.stitches.x = hints.stitches.x;
+  if (hints.stitches.y > 0) pattern.stitches.y = hints.stitches.y;
+  if (pattern.stitches.x == 0 || pattern.stitches.y == 0) {
+    const ivec2 estimate = estimate_stitches(pattern);
+    if (pattern.stitches.x == 0) pattern.stitches.x = estimate.x;
+    if (pattern.stitches.y == 0) pattern.stitches.y = estimate.y;
+  }
+  return pattern;
+}
+
+void recentre_z(Pattern& pattern) {
+  double lo = INFINITY, hi = -INFINITY;
+  for (const PatternCurve& curve : pattern.curves)
+    for (const dvec3& p : curve.points) lo = std::min(lo, p.z), hi = std::max(hi, p.z);
+  if (!(hi >= lo)) return;
+  for (PatternCurve& curve : pattern.curves)
+    for (dvec3& p : curve.points) p.z -= (lo + hi) / 2;
+}
+
+}  // namespace wale

@@ -1,0 +1,55 @@
+// Closed-form plain knit after Crane's "plain knit yarn", the side of the Vs towards +z:
+//   g(t) = (t + a sin 2t, h cos t, -d cos 2t),  a = 3/2, h = 4, d = 1, rows h + 1/2 apart, one stitch per 2 pi.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geom/error.h"
+#include "geom/pattern.h"
+
+namespace wale {
+namespace {
+
+constexpr double kRound = 1.5, kHeight = 4, kDepth = 1, kRow = kHeight + 0.5;
+constexpr double kTwoPi = 2 * std::numbers::pi;
+
+dvec3 loop(double t) { return {t + kRound * std::sin(2 * t), kHeight * std::cos(t), -kDepth * std::cos(2 * t)}; }
+
+/// Smallest distance between the yarns of neighbouring rows: a grid over both parameters, refined about its best point.
+double row_distance() {
+  double best = INFINITY, best_s = 0, best_t = 0;
+  double centre_s = 0, centre_t = 0, half = kTwoPi;
+  for (int round = 0; round < 12; ++round, half /= 8) {
+    constexpr int kSteps = 64;
+    for (int i = -kSteps; i <= kSteps; ++i)
+      for (int j = -kSteps; j <= kSteps; ++j) {
+        const double s = centre_s + half * i / kSteps, t = centre_t + half * j / kSteps;
+        const double distance = glm::distance(loop(s), loop(t) + dvec3(0, kRow, 0));
+        if (distance < best) best = distance, best_s = s, best_t = t;
+      }
+    centre_s = best_s;
+    centre_t = best_t;
+  }
+  return best;
+}
+
+}  // namespace
+
+Pattern stockinette_pattern(double wale_width) {
+  if (!(wale_width > 0) || !std::isfinite(wale_width))
+    user_error("a stitch {} m wide: it must be positive", wale_width);
+  const double scale = wale_width / kTwoPi;
+  Pattern pattern;
+  pattern.name = "stockinette";
+  pattern.period = {wale_width, kRow * scale};
+  pattern.stitches = {1, 1};
+  pattern.yarn_radius = row_distance() / 2 * scale;
+  constexpr int kPoints = 64;  // the spline then follows the closed form to 1e-4 of a yarn radius
+  PatternCurve curve;
+  for (int i = 0; i < kPoints; ++i) curve.points.push_back(scale * loop(kTwoPi * i / kPoints - std::numbers::pi));
+  curve.points.push_back(curve.points.front() + dvec3(wale_width, 0, 0));
+  pattern.curves.push_back(std::move(curve));
+  return pattern;
+}
+
+}  // namespace wale

@@ -1,0 +1,12 @@
+#pragma once
+#include "geom/flat_knit.h"
+
+namespace wale {
+
+/// Fills in `normal` and `length` of a yarn whose ply positions are there; `plies` of them. Normals are carried along
+/// each ply polyline by double reflection, perpendicular to the mean of the two unit edges at the vertex; they begin
+/// pointing away from the yarn axis. On a closed yarn the closing angle is spread over the length, so that the ghost
+/// samples agree with the samples that they repeat.
+void frame_plies(FlatYarn& yarn, int plies);
+
+}  // namespace wale

@@ -1,0 +1,141 @@
+// The two periods of a tile that states neither, from where its curves end (KNIT21 section 3.1 needs them to match).
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geom/error.h"
+#include "geom/pattern_readers.h"
+
+namespace wale {
+namespace {
+
+/// A curve end and the point before it, for blocks that overlap by two points (of which a curve of two has no inner
+/// one).
+struct End {
+  dvec3 point, inner;
+  bool has_inner = false;
+};
+
+/// Distance by which the two ends miss each other when f is displaced, for an overlap by one point or by two.
+double miss(const End& e, const End& f, dvec3 shift) {
+  const double one = glm::distance(e.point, f.point + shift);
+  if (!e.has_inner || !f.has_inner) return one;
+  const double two = std::max(glm::distance(e.point, f.inner + shift), glm::distance(e.inner, f.point + shift));
+  return std::min(one, two);
+}
+
+struct Match {
+  int paired = 0;
+  double worst = 0;
+  dvec2 sum{0, 0};  ///< of the displacements, per crossed period
+  ivec2 crossings{0, 0};
+};
+
+/// Pairs every end with its nearest end under the periods; counts those that are nearest to each other.
+Match match(const std::vector<End>& ends, dvec2 period, double tolerance) {
+  struct Nearest {
+    size_t to = 0;
+    ivec2 shift{0, 0};
+    double distance = std::numeric_limits<double>::infinity();
+  };
+  std::vector<Nearest> nearest(ends.size());
+  for (size_t i = 0; i < ends.size(); ++i)
+    for (size_t j = 0; j < ends.size(); ++j)
+      for (int y = -1; y <= 1 && i != j; ++y)
+        for (int x = -1; x <= 1; ++x) {
+          const double distance = miss(ends[i], ends[j], dvec3(x * period.x, y * period.y, 0));
+          if (distance < nearest[i].distance) nearest[i] = {j, {x, y}, distance};
+        }
+  Match result;
+  for (size_t i = 0; i < ends.size(); ++i) {
+    const Nearest& to = nearest[i];
+    const Nearest& back = nearest[to.to];
+    if (!(to.distance <= tolerance) || back.to != i || back.shift != -to.shift) continue;
+    ++result.paired;
+    result.worst = std::max(result.worst, to.distance);
+    const End &e = ends[i], &f = ends[to.to];
+    const dvec3 shift(to.shift.x * period.x, to.shift.y * period.y, 0);
+    const bool single = glm::distance(e.point, f.point + shift) <= tolerance;
+    const dvec3 apart = single ? e.point - f.point : (e.point - f.inner + e.inner - f.point) * 0.5;
+    for (const int axis : {0, 1})
+      if (to.shift[axis] != 0) {
+        result.sum[axis] += apart[axis] * to.shift[axis];
+        ++result.crossings[axis];
+      }
+  }
+  return result;
+}
+
+struct Candidate {
+  double period = 0;
+  int votes = 0;
+};
+
+/// Displacements along one axis between ends that agree across it; those within the tolerance of each other are one.
+std::vector<Candidate> candidates(const std::vector<End>& ends, int axis, double least, double tolerance) {
+  std::vector<double> found;
+  for (const End& e : ends)
+    for (const End& f : ends)
+      for (const dvec3& apart : {e.point - f.point, e.point - f.inner})
+        if (apart[axis] > least && std::abs(apart[1 - axis]) <= tolerance && std::abs(apart.z) <= tolerance)
+          found.push_back(apart[axis]);
+  std::sort(found.begin(), found.end());
+  std::vector<Candidate> clusters;
+  for (size_t i = 0; i < found.size();) {
+    size_t j = i;
+    double sum = 0;
+    for (; j < found.size() && found[j] - found[i] <= tolerance; ++j) sum += found[j];
+    clusters.push_back({sum / double(j - i), static_cast<int>(j - i)});
+    i = j;
+  }
+  std::stable_sort(clusters.begin(), clusters.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.votes > b.votes; });
+  constexpr size_t kMost = 24;
+  if (clusters.size() > kMost) clusters.resize(kMost);
+  return clusters;
+}
+
+}  // namespace
+
+dvec2 recover_periods(const Pattern& pattern, dvec2 known, double tolerance, const std::filesystem::path& file) {
+  if (known.x > 0 && known.y > 0) return known;
+  std::vector<End> ends;
+  for (const PatternCurve& curve : pattern.curves) {
+    if (curve.closed) continue;
+    const auto& p = curve.points;
+    ends.push_back({p.front(), p[1], p.size() > 2});
+    ends.push_back({p.back(), p[p.size() - 2], p.size() > 2});
+  }
+  std::vector<Candidate> along[2];
+  for (const int axis : {0, 1}) {
+    along[axis] = known[axis] > 0 ? std::vector<Candidate>{{known[axis], 0}}
+                                  : candidates(ends, axis, 2 * pattern.yarn_radius, tolerance);
+    if (along[axis].empty())
+      user_error("{}: no two curve ends lie one {} period apart; give the period", file.string(),
+                 axis == 0 ? "x" : "y");
+  }
+  dvec2 best{0, 0};
+  Match best_match;
+  for (const Candidate& x : along[0])
+    for (const Candidate& y : along[1]) {
+      const Match tried = match(ends, {x.period, y.period}, tolerance);
+      const bool better = tried.paired > best_match.paired ||
+                          (tried.paired == best_match.paired && tried.paired > 0 && tried.worst < best_match.worst);
+      if (better) best = {x.period, y.period}, best_match = tried;
+    }
+  if (best_match.paired < static_cast<int>(ends.size()))
+    user_error("{}: the periods cannot be recovered: {} of {} curve ends find a partner at best; give the period",
+               file.string(), best_match.paired, ends.size());
+  // The mean over all crossings is exact where the file is, and least squares where it is not.
+  const Match refined = match(ends, best, tolerance);
+  for (const int axis : {0, 1}) {
+    if (known[axis] > 0) continue;
+    if (refined.crossings[axis] == 0)
+      user_error("{}: no curve crosses the {} border, so that period is unknown; give the period", file.string(),
+                 axis == 0 ? "x" : "y");
+    best[axis] = refined.sum[axis] / refined.crossings[axis];
+  }
+  return best;
+}
+
+}  // namespace wale

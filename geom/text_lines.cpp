@@ -1,0 +1,64 @@
+#include "geom/text_lines.h"
+
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+namespace wale {
+
+std::string read_bytes(const std::filesystem::path& file) {
+  std::error_code failed;
+  if (!std::filesystem::exists(file, failed)) user_error("{}: no such file", file.string());
+  if (std::filesystem::is_directory(file, failed)) user_error("{}: is a folder; name a file", file.string());
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (!in) user_error("{}: cannot be read", file.string());
+  return bytes;
+}
+
+std::vector<TextLine> read_lines(const std::filesystem::path& file, char comment) {
+  std::istringstream in(read_bytes(file));
+  std::vector<TextLine> lines;
+  std::string text;
+  for (int number = 1; std::getline(in, text); ++number) {
+    if (comment != '\0') text.resize(std::min(text.find(comment), text.size()));
+    std::istringstream words(text);
+    TextLine line{number, {std::istream_iterator<std::string>(words), std::istream_iterator<std::string>()}};
+    if (!line.words.empty()) lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+double finite_number(const std::filesystem::path& file, int line, const std::string& word) {
+  double value = 0;
+  const char* end = word.data() + word.size();
+  const auto [stop, failed] = std::from_chars(word.data(), end, value);
+  if (failed != std::errc() || stop != end) user_error("{}:{}: '{}' is not a number", file.string(), line, word);
+  if (!std::isfinite(value)) user_error("{}:{}: '{}' is not a finite number", file.string(), line, word);
+  return value;
+}
+
+long whole_number(const std::filesystem::path& file, int line, const std::string& word) {
+  long value = 0;
+  const char* end = word.data() + word.size();
+  const auto [stop, failed] = std::from_chars(word.data(), end, value);
+  if (failed != std::errc() || stop != end) user_error("{}:{}: '{}' is not a whole number", file.string(), line, word);
+  return value;
+}
+
+void write_whole_file(const std::filesystem::path& file, std::string_view text) {
+  std::filesystem::path temporary = file;
+  temporary += ".tmp";
+  {
+    std::ofstream out(temporary, std::ios::binary);
+    out.write(text.data(), static_cast<std::streamsize>(text.size()));
+    out.flush();
+    if (!out) user_error("{}: cannot be written; choose a folder that exists and is writable", file.string());
+  }
+  std::error_code failed;
+  std::filesystem::rename(temporary, file, failed);
+  if (failed) user_error("{}: cannot be written: {}", file.string(), failed.message());
+}
+
+}  // namespace wale

@@ -1,0 +1,159 @@
+#include "geom/yarn_cut.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geom/mesh_edges.h"
+#include "geom/warp.h"
+
+namespace wale {
+namespace {
+
+/// A neighbour that lies this many times farther off in space than its own triangle's map says belongs to another part
+/// of the chart that merely touches this one in UV. Creases and uneven UVs stay well below.
+constexpr double kJump = 3;
+
+}  // namespace
+
+YarnCutter::YarnCutter(Fabric& fabric, uint32_t chart, const ChartMap& map, double height_offset,
+                       std::vector<dvec2>& uv)
+    : fabric_(fabric),
+      chart_(chart),
+      map_(map),
+      height_offset_(height_offset),
+      uv_(uv),
+      locator_(fabric.mesh, fabric.charts[chart]) {}
+
+YarnCutter::Sample YarnCutter::locate_sample(dvec3 centre) const {
+  Sample sample;
+  sample.uv = map_.uv_per_metre * dvec2(centre);
+  sample.kept = locator_.locate(sample.uv, map_.half_stitch, map_.metric, sample.at);
+  if (sample.kept) sample.point = warp_point(fabric_.mesh, sample.at, 0);
+  return sample;
+}
+
+ChartPoint YarnCutter::extrapolate(const Sample& from, dvec2 uv) const {
+  const auto& t = fabric_.mesh.uv[from.at.triangle];
+  const dvec2 e1 = t[1] - t[0], e2 = t[2] - t[0], d = uv - from.uv;
+  const double det = uv_area2(t);
+  ChartPoint point = from.at;
+  point.b1 += (d.x * e2.y - d.y * e2.x) / det;
+  point.b2 += (e1.x * d.y - e1.y * d.x) / det;
+  return point;
+}
+
+bool YarnCutter::jumps(const Sample& a, const Sample& b) const {
+  if (a.at.triangle == b.at.triangle) return false;
+  const double forth = glm::length(warp_point(fabric_.mesh, extrapolate(a, b.uv), 0) - a.point);
+  const double back = glm::length(warp_point(fabric_.mesh, extrapolate(b, a.uv), 0) - b.point);
+  const double flat = glm::length((b.uv - a.uv) * map_.metric);
+  return glm::length(b.point - a.point) > kJump * std::max({forth, back, flat});
+}
+
+void YarnCutter::add(const FlatYarn& yarn) {
+  const size_t total = yarn.centre.size();
+  // A closed yarn's own samples are 1 .. K-3; 0, K-2 and K-1 repeat them.
+  const size_t first = yarn.closed ? 1 : 0, count = yarn.closed ? total - 3 : total;
+  samples_.resize(total);
+  for (size_t k = first; k < first + count; ++k) samples_[k] = locate_sample(yarn.centre[k]);
+
+  const auto own = [&](size_t i) -> Sample& { return samples_[first + i % count]; };
+  const dvec2 lap = yarn.closed ? map_.uv_per_metre * dvec2(yarn.centre[total - 2] - yarn.centre[1]) : dvec2(0);
+  bool whole = yarn.closed;
+  size_t start = 0;  // where a closed yarn may be opened
+  for (size_t i = 0; i < count; ++i) {
+    Sample& here = own(i);
+    const size_t before = i > 0 ? i - 1 : count - 1;
+    if (i > 0 || yarn.closed) {
+      Sample previous = own(before);
+      if (i == 0) previous.uv -= lap;
+      here.cut_before = here.kept && previous.kept && jumps(previous, here);
+      fabric_.report.jumps_cut += here.cut_before;
+    }
+    if (!here.kept || here.cut_before) {
+      whole = false;
+      start = i;
+    }
+    fabric_.report.samples_outside += !here.kept;
+    fabric_.report.samples_extrapolated += here.kept && here.at.outside > 0;
+  }
+  if (whole) {
+    add_run(yarn, 0, total, true);
+    ++fabric_.report.full_yarns;
+    return;
+  }
+  if (!yarn.closed) start = 0;
+  for (size_t i = 0; i < count;) {
+    if (!own(start + i).kept) {
+      ++i;
+      continue;
+    }
+    size_t end = i + 1;
+    while (end < count && own(start + end).kept && !own(start + end).cut_before) ++end;
+    if (end - i >= 2)
+      add_run(yarn, first + start + i, end - i, false);
+    else
+      ++fabric_.report.samples_outside;  // a single sample makes no segment
+    i = end;
+  }
+  ++fabric_.report.full_yarns;
+}
+
+void YarnCutter::add_run(const FlatYarn& yarn, size_t begin, size_t count, bool ghost_ends) {
+  const size_t total = yarn.centre.size(), plies = static_cast<size_t>(fabric_.plies);
+  PlyRun run;
+  run.first_vertex = static_cast<uint32_t>(fabric_.anchors.size());
+  run.count = static_cast<uint32_t>(count);
+  run.yarn = static_cast<uint32_t>(fabric_.report.full_yarns);
+  run.chart = chart_;
+  run.ghost_ends = ghost_ends;
+
+  const size_t period = yarn.closed ? total - 3 : total;
+  const dvec2 lap = yarn.closed ? map_.uv_per_metre * dvec2(yarn.centre[total - 2] - yarn.centre[1]) : dvec2(0);
+  for (size_t p = 0; p < plies; ++p) {
+    const double* length = yarn.length.data() + p * total;
+    const double lap_length = yarn.closed ? length[total - 2] - length[1] : 0;
+    for (size_t i = 0; i < count; ++i) {
+      // Ghosts take the very anchor of the sample they repeat, so that the ends meet to the last bit.
+      size_t k = begin + i;
+      double laps = 0;
+      if (yarn.closed) {
+        const ptrdiff_t from_one = static_cast<ptrdiff_t>(k) - 1;
+        laps = std::floor(static_cast<double>(from_one) / static_cast<double>(period));
+        k = static_cast<size_t>(from_one - static_cast<ptrdiff_t>(laps) * static_cast<ptrdiff_t>(period)) + 1;
+      }
+      const size_t vertex = p * total + k;
+      const dvec2 uv = map_.uv_per_metre * dvec2(yarn.position[vertex]);
+      Anchor anchor = anchor_of(yarn, vertex, samples_[k], uv);
+      anchor.length = static_cast<float>(length[k] + laps * lap_length);
+      fabric_.anchors.push_back(anchor);
+      uv_.push_back(uv + laps * lap);
+    }
+  }
+  fabric_.runs.push_back(run);
+}
+
+Anchor YarnCutter::anchor_of(const FlatYarn& yarn, size_t vertex, const Sample& centre, dvec2 uv) const {
+  const double reach = map_.half_stitch + 2 * fabric_.yarn_radius;
+  ChartPoint at;
+  if (!locator_.locate(uv, reach, map_.metric, at)) {
+    at = extrapolate(centre, uv);
+  } else if (at.triangle != centre.at.triangle) {
+    const ChartPoint beside = extrapolate(centre, uv);
+    const dvec3 guess = warp_point(fabric_.mesh, beside, 0), found = warp_point(fabric_.mesh, at, 0);
+    const double offset = std::max(glm::length(guess - centre.point), glm::length((uv - centre.uv) * map_.metric));
+    if (glm::length(found - guess) > kJump * offset) at = beside;
+  }
+  const dvec3 normal = yarn.normal[vertex];
+  Anchor anchor;
+  anchor.triangle = at.triangle;
+  anchor.b1 = static_cast<float>(at.b1);
+  anchor.b2 = static_cast<float>(at.b2);
+  anchor.height = static_cast<float>(yarn.position[vertex].z + height_offset_);
+  anchor.nx = static_cast<float>(normal.x);
+  anchor.ny = static_cast<float>(normal.y);
+  anchor.nz = static_cast<float>(normal.z);
+  return anchor;
+}
+
+}  // namespace wale
