@@ -2,6 +2,9 @@
 #include <CL/opencl.hpp>
 
 #include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -19,6 +22,12 @@ struct DeviceTraits {
   unsigned local_size = 64;  ///< work-group size of every kernel
 };
 
+/// Programs already built for a device, by source and options: an edit that changes neither compiles nothing.
+struct ProgramCache {
+  std::mutex mutex;
+  std::map<std::string, cl::Program> programs;
+};
+
 /// An OpenCL device with its context and one in-order queue. Passed explicitly, never global.
 class Device {
  public:
@@ -32,6 +41,7 @@ class Device {
   const cl::Context& context() const { return context_; }
   const cl::CommandQueue& queue() const { return queue_; }
   const cl::Device& id() const { return device_; }
+  ProgramCache& programs() const { return *programs_; }
 
   /// Rounds a global size up to a multiple of the work-group size.
   cl::NDRange global(size_t items) const;
@@ -42,6 +52,7 @@ class Device {
   cl::Device device_;
   cl::Context context_;
   cl::CommandQueue queue_;
+  std::shared_ptr<ProgramCache> programs_ = std::make_shared<ProgramCache>();
 };
 
 /// A buffer of T on the device; never empty (at least one element is allocated), so that it can always be an argument.

@@ -50,6 +50,12 @@ void expand(const std::string& text, const std::string& file, const std::filesys
 cl::Program compile(const Device& device, const std::string& source, const std::string& file, std::string options) {
   options += " -cl-std=CL1.2";
   if (options.find("W_LANES") == std::string::npos) options += fmt::format(" -DW_LANES={}", device.traits().lanes);
+  const std::string key = options + '\n' + source;
+  {
+    const std::lock_guard lock(device.programs().mutex);
+    const auto found = device.programs().programs.find(key);
+    if (found != device.programs().programs.end()) return found->second;
+  }
   cl::Program program(device.context(), source);
   try {
     program.build({device.id()}, options.c_str());
@@ -57,7 +63,8 @@ cl::Program compile(const Device& device, const std::string& source, const std::
     device_error("kernels/{}: does not compile for {} with{}\n{}", file, device.traits().name, options,
                  program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.id()));
   }
-  return program;
+  const std::lock_guard lock(device.programs().mutex);
+  return device.programs().programs.emplace(key, program).first->second;
 }
 
 }  // namespace

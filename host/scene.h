@@ -123,6 +123,7 @@ struct IntegratorScene {
 /// A whole scene in SI units (metres, radians), colours linear. Materials are referred to by index.
 struct Scene {
   std::string file;
+  bool camera_given = false;  ///< else the host frames what there is
   CameraScene camera;
   FilmScene film;
   IntegratorScene integrator;

@@ -48,6 +48,7 @@ typedef int32_t w_int;
 #define W_LEAF_CELL 8       /* UV cell that owns the patch (global number) */
 #define W_LEAF_FABRIC 9
 #define W_LEAF_ENDS 10      /* bit 0: the first segment starts at an open end of the yarn; bit 1: the last one ends there */
+#define W_LEAF_PLY 11       /* number of the run's first ply, over all fabrics */
 /* Hit code of a ply segment: leaf offset (16-byte units) << 4 | lane. */
 
 /* --- stored ply vertex: 7 floats, 28 bytes: position, frame normal, rest length along the full ply ----------------- */
@@ -158,7 +159,7 @@ typedef struct WFrame {
   w_int light_sampling;    /* 0 MIS, 1 light sampling only, 2 BSDF sampling only */
   w_uint lights;
   w_uint spheres;
-  w_uint pad0;
+  w_uint roulette_depth;   /* first depth at which Russian roulette may end a path */
 } WFrame;
 
 /* Rare events, counted on the device: never hidden. */

@@ -1,0 +1,268 @@
+#include "host/fabric_device.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <chrono>
+#include <cmath>
+
+#include "geom/error.h"
+#include "host/program.h"
+
+namespace wale {
+namespace {
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+size_t cells_of(const Fabric& fabric) {
+  size_t cells = fabric.cell_triangles.offset.empty() ? 0 : fabric.cell_triangles.offset.size() - 1;
+  for (const UvGrid& grid : fabric.grids)
+    cells = std::max(cells, size_t(grid.first_cell) + size_t(grid.size.x) * size_t(grid.size.y));
+  for (const Patch& patch : fabric.patches) cells = std::max<size_t>(cells, patch.cell + 1);
+  return cells;
+}
+
+// What the warp reads, of all fabrics.
+struct WarpInput {
+  std::vector<WAnchor> anchors;
+  std::vector<float> positions, normals, cloth;
+  std::vector<uint32_t> triangles;
+  std::vector<uint8_t> flags;
+};
+
+void append(WarpInput& out, const Fabric& fabric, dvec3 origin) {
+  const uint32_t first_triangle = uint32_t(out.triangles.size() / 3), first_point = uint32_t(out.positions.size() / 3);
+  const size_t first_vertex = out.anchors.size();
+  for (const Anchor& a : fabric.anchors)
+    out.anchors.push_back({a.triangle + first_triangle, a.b1, a.b2, a.height, a.nx, a.ny, a.nz, a.length});
+  for (size_t i = 0; i < fabric.mesh.position.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      out.positions.push_back(float(fabric.mesh.position[i][k] - origin[k]));
+      out.normals.push_back(float(fabric.mesh.normal[i][k]));
+    }
+  for (size_t t = 0; t < fabric.mesh.triangle.size(); ++t) {
+    const uint32_t chart = t < fabric.chart_of_triangle.size() ? fabric.chart_of_triangle[t] : W_NONE;
+    const dvec2 per_metre = chart < fabric.uv_per_metre.size() ? fabric.uv_per_metre[chart] : dvec2(1);
+    for (int corner = 0; corner < 3; ++corner) {
+      out.triangles.push_back(fabric.mesh.triangle[t][corner] + first_point);
+      // Only differences matter: relative to the first corner, which keeps their precision in float.
+      const dvec2 xy = (fabric.mesh.uv[t][corner] - fabric.mesh.uv[t][0]) / per_metre;
+      out.cloth.push_back(float(xy.x));
+      out.cloth.push_back(float(xy.y));
+    }
+  }
+  out.flags.resize(out.anchors.size(), 0);
+  for (const PlyRun& run : fabric.runs)
+    for (int p = 0; p < fabric.plies; ++p) {
+      const size_t first = first_vertex + run.first_vertex + size_t(p) * run.count;
+      if (run.count == 0) continue;
+      out.flags[first] |= 1;
+      out.flags[first + run.count - 1] |= 2;
+    }
+}
+
+Buffer<float> warp(const Device& device, const WarpInput& in) {
+  const uint32_t count = uint32_t(in.anchors.size());
+  Buffer<float> vertices(device, size_t(count) * W_VERTEX_WORDS);
+  if (count == 0) return vertices;
+  const Buffer<WAnchor> anchors(device, in.anchors);
+  const Buffer<float> positions(device, in.positions), normals(device, in.normals), cloth(device, in.cloth);
+  const Buffer<uint32_t> triangles(device, in.triangles);
+  const Buffer<uint8_t> flags(device, in.flags);
+  const cl::Program program = build_program(device, "warp.cl");
+  cl::Kernel points(program, "warp_points"), frames(program, "warp_normals");
+  for (cl::Kernel* kernel : {&points, &frames}) {
+    kernel->setArg(0, anchors.cl());
+    kernel->setArg(1, positions.cl());
+    kernel->setArg(2, normals.cl());
+    kernel->setArg(3, triangles.cl());
+  }
+  points.setArg(4, vertices.cl());
+  points.setArg(5, count);
+  frames.setArg(4, cloth.cl());
+  frames.setArg(5, flags.cl());
+  frames.setArg(6, vertices.cl());
+  frames.setArg(7, count);
+  device.queue().enqueueNDRangeKernel(points, cl::NullRange, device.global(count), device.local());
+  device.queue().enqueueNDRangeKernel(frames, cl::NullRange, device.global(count), device.local());
+  device.queue().finish();
+  return vertices;
+}
+
+dvec2 cell_corner(const UvGrid& grid, uint32_t local) {
+  return grid.origin + grid.cell_size * dvec2(local % uint32_t(grid.size.x), local / uint32_t(grid.size.x));
+}
+
+void join(Box& a, const Box& b) {
+  for (int k = 0; k < 3; ++k) {
+    a.lo[k] = std::min(a.lo[k], b.lo[k]);
+    a.hi[k] = std::max(a.hi[k], b.hi[k]);
+  }
+}
+
+// Bounds of the base triangles of every cell of one fabric, each clipped to its cell. Across a join a triangle may lie
+// whole periods away from the cell that lists it.
+void append_group_boxes(std::vector<Box>& boxes, const Fabric& fabric, dvec3 origin, size_t first_cell) {
+  for (const UvGrid& grid : fabric.grids)
+    for (uint32_t at = 0; at < uint32_t(grid.size.x) * uint32_t(grid.size.y); ++at) {
+      const uint32_t cell = grid.first_cell + at;
+      if (cell + 1 >= fabric.cell_triangles.offset.size()) continue;
+      for (uint32_t i = fabric.cell_triangles.offset[cell]; i < fabric.cell_triangles.offset[cell + 1]; ++i)
+        for (int sx = grid.wrap.x ? -1 : 0; sx <= (grid.wrap.x ? 1 : 0); ++sx)
+          for (int sy = grid.wrap.y ? -1 : 0; sy <= (grid.wrap.y ? 1 : 0); ++sy) {
+            const dvec2 lo = cell_corner(grid, at) + dvec2(sx * grid.wrap.x, sy * grid.wrap.y) * grid.cell_size;
+            join(boxes[first_cell + cell],
+                 clipped_triangle_box(fabric.mesh, fabric.cell_triangles.item[i], lo, lo + grid.cell_size, origin));
+          }
+    }
+}
+
+// Base mesh, grids and lists of the cell stages.
+struct CellLists {
+  std::vector<uint32_t> triangle_offsets{0}, triangles, segment_offsets{0}, segments, grid_of_cell;
+  std::vector<WGrid> grids;
+  std::vector<float> uv;
+};
+
+void append(CellLists& out, const Fabric& fabric, size_t cells, uint32_t first_cell, uint32_t first_triangle,
+            const std::vector<uint32_t>& code_of_vertex, uint32_t first_vertex) {
+  const uint32_t first_grid = uint32_t(out.grids.size());
+  out.grid_of_cell.resize(first_cell + cells, 0);
+  for (const UvGrid& g : fabric.grids) {
+    out.grids.push_back({g.first_cell + first_cell, g.size.x, g.size.y, g.wrap.x, float(g.origin.x), float(g.origin.y),
+                         float(1 / g.cell_size.x), float(1 / g.cell_size.y), g.wrap.y, 0, 0, 0});
+    std::fill_n(out.grid_of_cell.begin() + first_cell + g.first_cell, size_t(g.size.x) * size_t(g.size.y),
+                uint32_t(out.grids.size() - 1));
+  }
+  for (size_t t = 0; t < fabric.mesh.triangle.size(); ++t) {
+    for (const dvec2& uv : fabric.mesh.uv[t]) {
+      out.uv.push_back(float(uv.x));
+      out.uv.push_back(float(uv.y));
+    }
+    const uint32_t chart = t < fabric.chart_of_triangle.size() ? fabric.chart_of_triangle[t] : 0;
+    out.uv.push_back(std::bit_cast<float>(first_grid + (chart < fabric.grids.size() ? chart : 0)));
+  }
+  for (size_t cell = 0; cell < cells; ++cell) {
+    if (cell + 1 < fabric.cell_triangles.offset.size())
+      for (uint32_t i = fabric.cell_triangles.offset[cell]; i < fabric.cell_triangles.offset[cell + 1]; ++i)
+        out.triangles.push_back(fabric.cell_triangles.item[i] + first_triangle);
+    out.triangle_offsets.push_back(uint32_t(out.triangles.size()));
+    const size_t start = out.segments.size();
+    if (cell + 1 < fabric.cell_segments.offset.size())
+      for (uint32_t i = fabric.cell_segments.offset[cell]; i < fabric.cell_segments.offset[cell + 1]; ++i) {
+        const uint32_t code = code_of_vertex[first_vertex + fabric.cell_segments.item[i]];
+        if (code != W_NONE) out.segments.push_back(code);
+      }
+    std::sort(out.segments.begin() + start, out.segments.end());  // leaf by leaf
+    out.segment_offsets.push_back(uint32_t(out.segments.size()));
+  }
+}
+
+}  // namespace
+
+Box clipped_triangle_box(const BaseMesh& mesh, uint32_t triangle, dvec2 cell_lo, dvec2 cell_hi, dvec3 origin) {
+  struct Corner {
+    dvec2 uv;
+    dvec3 position;
+  };
+  std::vector<Corner> polygon, clipped;
+  for (int k = 0; k < 3; ++k)
+    polygon.push_back({mesh.uv[triangle][k], mesh.position[mesh.triangle[triangle][k]] - origin});
+  // Sutherland and Hodgman, one side of the cell after the other.
+  for (int side = 0; side < 4 && !polygon.empty(); ++side) {
+    const int axis = side / 2;
+    const auto inside = [&](const Corner& c) {
+      return side % 2 == 0 ? c.uv[axis] - cell_lo[axis] : cell_hi[axis] - c.uv[axis];
+    };
+    clipped.clear();
+    for (size_t i = 0; i < polygon.size(); ++i) {
+      const Corner &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+      const double da = inside(a), db = inside(b);
+      if (da >= 0) clipped.push_back(a);
+      if ((da >= 0) != (db >= 0)) {
+        const double t = da / (da - db);
+        clipped.push_back({a.uv + t * (b.uv - a.uv), a.position + t * (b.position - a.position)});
+      }
+    }
+    polygon.swap(clipped);
+  }
+  Box box;
+  for (const Corner& c : polygon)
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] = std::min(box.lo[k], std::nextafter(float(c.position[k]), -INFINITY));
+      box.hi[k] = std::max(box.hi[k], std::nextafter(float(c.position[k]), INFINITY));
+    }
+  return box;
+}
+
+FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> inputs, dvec3 origin, LocalStage stage) {
+  FabricDevice out;
+  const double start = now();
+  WarpInput warp_input;
+  std::vector<PlyPatch> patches;
+  size_t plies = 0;
+  for (uint32_t f = 0; f < inputs.size(); ++f) {
+    const Fabric& fabric = *inputs[f].fabric;
+    out.first_vertex.push_back(uint32_t(warp_input.anchors.size()));
+    out.first_cell.push_back(uint32_t(out.cell_count));
+    out.first_triangle.push_back(uint32_t(warp_input.triangles.size() / 3));
+    append(warp_input, fabric, origin);
+    for (const Patch& p : fabric.patches) {
+      const PlyRun& run = fabric.runs[p.run];
+      patches.push_back({out.first_vertex[f] + run.first_vertex, run.count, p.first, p.intervals,
+                         uint32_t(fabric.plies), out.first_cell[f] + p.cell, f, inputs[f].material,
+                         uint32_t(plies + size_t(p.run) * fabric.plies), float(fabric.ply_radius), inputs[f].tau,
+                         run.ghost_ends});
+      out.segment_count += size_t(p.intervals) * fabric.plies;
+    }
+    plies += fabric.runs.size() * fabric.plies;
+    out.cell_count += cells_of(fabric);
+  }
+  out.vertex_count = warp_input.anchors.size();
+  out.triangle_count = warp_input.triangles.size() / 3;
+  out.patch_count = patches.size();
+  out.vertices = warp(device, warp_input);
+  out.warp_seconds = now() - start;
+
+  std::vector<Box> group_boxes;
+  if (stage != LocalStage::exact) {
+    group_boxes.resize(out.cell_count);
+    for (size_t f = 0; f < inputs.size(); ++f)
+      append_group_boxes(group_boxes, *inputs[f].fabric, origin, out.first_cell[f]);
+  }
+  out.tree = build_ply_tree(device, patches, out.vertices, group_boxes);
+  out.pack_seconds = out.tree.pack_seconds;
+  out.build_seconds = out.tree.build_seconds;
+  out.node_count = out.tree.node_cell.count();
+  out.bytes = out.vertices.bytes() + out.tree.leaves.bytes() + out.tree.nodes.bytes() + out.tree.node_cell.bytes();
+  if (stage == LocalStage::exact) return out;
+
+  std::vector<uint32_t> code_of_vertex(out.vertex_count, W_NONE);
+  for (size_t i = 0; i < patches.size(); ++i)
+    for (uint32_t k = 0; k < patches[i].intervals; ++k)
+      for (uint32_t p = 0; p < patches[i].plies; ++p)
+        code_of_vertex[patches[i].first_vertex + p * patches[i].count + patches[i].first + k] =
+            out.tree.hit_code(i, patches[i].plies, k, p);
+  CellLists lists;
+  for (size_t f = 0; f < inputs.size(); ++f) {
+    const size_t last = f + 1 < inputs.size() ? out.first_cell[f + 1] : out.cell_count;
+    append(lists, *inputs[f].fabric, last - out.first_cell[f], out.first_cell[f], out.first_triangle[f], code_of_vertex,
+           out.first_vertex[f]);
+  }
+  out.base_positions = Buffer<float>(device, warp_input.positions);
+  out.base_indices = Buffer<uint32_t>(device, warp_input.triangles);
+  out.base_uv = Buffer<float>(device, lists.uv);
+  out.cell_triangle_offsets = Buffer<uint32_t>(device, lists.triangle_offsets);
+  out.cell_triangles = Buffer<uint32_t>(device, lists.triangles);
+  out.cell_segment_offsets = Buffer<uint32_t>(device, lists.segment_offsets);
+  out.cell_segments = Buffer<uint32_t>(device, lists.segments);
+  out.grid_of_cell = Buffer<uint32_t>(device, lists.grid_of_cell);
+  out.grids = Buffer<WGrid>(device, lists.grids);
+  for (size_t bytes : {out.base_positions.bytes(), out.base_indices.bytes(), out.base_uv.bytes(),
+                       out.cell_triangle_offsets.bytes(), out.cell_triangles.bytes(), out.cell_segment_offsets.bytes(),
+                       out.cell_segments.bytes(), out.grid_of_cell.bytes(), out.grids.bytes()})
+    out.bytes += bytes;
+  return out;
+}
+
+}  // namespace wale

@@ -1,0 +1,49 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geom/fabric.h"
+#include "host/ply_tree.h"
+#include "shared/wale_types.h"
+
+namespace wale {
+
+/// A fabric and what its plies are made of on the device.
+struct FabricInput {
+  const Fabric* fabric = nullptr;
+  uint32_t material = 0;  ///< ply material
+  float tau = 0;          ///< effective optical radius of its plies; -1 or less = opaque
+};
+
+/// How the plies that a ray meets are found: W_LOCAL_STAGE of the kernels.
+enum class LocalStage { exact = 0, cell = 1, ring = 2 };
+
+/// All fabrics of a scene on the device, warped, packed and with their tree. Vertices, cells, triangles and grids of
+/// the fabrics are numbered one fabric after the other; fabric f's vertices start at first_vertex[f].
+struct FabricDevice {
+  Buffer<float> vertices;  ///< W_VERTEX_WORDS a vertex
+  PlyTree tree;
+  std::vector<uint32_t> first_vertex, first_cell, first_triangle;
+
+  // Filled for the cell stages only; layouts as in kernels/geometry/scene.clh.
+  Buffer<float> base_positions, base_uv;
+  Buffer<uint32_t> base_indices;
+  Buffer<uint32_t> cell_triangle_offsets, cell_triangles, cell_segment_offsets, cell_segments, grid_of_cell;
+  Buffer<WGrid> grids;
+
+  size_t vertex_count = 0, segment_count = 0, patch_count = 0, cell_count = 0, triangle_count = 0, node_count = 0;
+  size_t bytes = 0;  ///< that stay on the device
+  double warp_seconds = 0, pack_seconds = 0, build_seconds = 0;
+};
+
+/// Warps, packs and uploads. `origin` is subtracted from base positions in double. Throws device errors only.
+FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> inputs, dvec3 origin,
+                            LocalStage stage = LocalStage::exact);
+
+/// Bounds of the part of a cell that a triangle covers (host side of the cell stages; exposed for tests): the triangle
+/// is clipped in UV to the cell, so that a large triangle under many cells gives each its own part. Empty box when they
+/// do not meet.
+Box clipped_triangle_box(const BaseMesh& mesh, uint32_t triangle, dvec2 cell_lo, dvec2 cell_hi, dvec3 origin);
+
+}  // namespace wale

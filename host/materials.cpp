@@ -1,0 +1,117 @@
+#include "host/materials.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "geom/error.h"
+
+namespace wale {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+// One row per preset: fitted to bundles of dielectric fibres by a virtual goniometer (docs/appearance.md). Angles in
+// degrees, variances in rad^2, twist = tangent of the surface fibres' angle to the axis.
+struct Preset {
+  const char* name;
+  double fresnel, beta, twist;
+  double tau_e, e_r, b, s_f0, e_f, d_f, s_b, d_b, v_c, v_e, n0, n1;
+  Rgb color;  ///< transmission of one fibre: undyed yarn
+};
+constexpr std::array<Preset, 4> kPresets = {{
+    {"cotton", .045, 8, .39, 3.2, .32, 1.07, .53, .87, 42, 2.43, 57, .220, .135, 2.4, 5.1, {.965, .955, .930}},
+    {"wool", .047, 6, .35, 2.5, .34, 0.43, .58, .94, 24, 3.00, -57, .163, .057, 1.3, 4.9, {.930, .895, .820}},
+    {"silk", .050, 3, .09, 3.7, .32, 0.58, .52, 1.00, 26, 3.00, -57, .120, .040, 2.2, 7.1, {.970, .950, .900}},
+    {"polyester", .055, 4, .16, 3.0, .34, 0.42, .54, .98, 20, 3.00, -57, .139, .039, 1.1, 6.2, {.960, .960, .960}},
+}};
+
+void require_range(double value, double low, double high, const char* what) {
+  if (!(value >= low && value <= high))
+    user_error("material: {} is {}; the nearest valid value is {}", what, value, value > high ? high : low);
+}
+
+w_float4 color4(const Rgb& c, const char* what, float w) {
+  for (const double v : c) require_range(v, 0, 1, what);
+  return {float(c[0]), float(c[1]), float(c[2]), w};
+}
+
+double fresnel_of(double ior) {
+  const double r = (ior - 1) / (ior + 1);
+  return r * r;
+}
+
+}  // namespace
+
+const std::vector<std::string>& ply_presets() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> out;
+    for (const Preset& p : kPresets) out.push_back(p.name);
+    return out;
+  }();
+  return names;
+}
+
+WPlyMaterial ply_material(const PlyAppearance& appearance) {
+  const auto preset =
+      std::find_if(kPresets.begin(), kPresets.end(), [&](const Preset& p) { return appearance.preset == p.name; });
+  if (preset == kPresets.end())
+    user_error("material: no ply preset is called '{}'; there are {}", appearance.preset,
+               fmt::join(ply_presets(), ", "));
+  if (appearance.forward.has_value() != appearance.back.has_value())
+    user_error("material: the body colours 'forward' and 'back' come together; '{}' is missing",
+               appearance.forward ? "back" : "forward");
+
+  WPlyMaterial m{};
+  const bool direct = appearance.forward.has_value();
+  m.fibre = color4(appearance.color.value_or(preset->color), "color", direct ? 1.0f : 0.0f);
+  if (direct) {
+    m.forward = color4(*appearance.forward, "forward", 0);
+    m.back = color4(*appearance.back, "back", 0);
+  }
+  const double roughness = appearance.roughness.value_or(preset->beta * kDegree);
+  require_range(roughness, 0.001, 1, "roughness (radians)");
+  m.beta_r = float(roughness);
+  m.f0 = float(preset->fresnel);
+  if (appearance.ior) {
+    require_range(*appearance.ior, 1, 3, "ior");
+    m.f0 = float(fresnel_of(*appearance.ior));
+  }
+  m.tau_e = float(appearance.optical_radius.value_or(preset->tau_e));
+  require_range(m.tau_e, 0, 100, "optical_radius");
+  m.tilt = float(preset->twist);
+  if (appearance.fibre_twist) {
+    require_range(*appearance.fibre_twist, -1.4, 1.4, "fibre_twist (radians)");
+    m.tilt = float(std::tan(*appearance.fibre_twist));
+  }
+  m.e_r = float(preset->e_r);
+  m.e_r_h4 = 0.6f;  // the fibres reflect uniformly in azimuth: their share grows towards the rim
+  m.b = float(preset->b);
+  m.s_f0 = float(preset->s_f0);
+  m.e_f = float(preset->e_f);
+  m.d_f = float(preset->d_f * kDegree);
+  m.s_b = float(preset->s_b);
+  m.d_b = float(preset->d_b * kDegree);
+  m.v_c = float(preset->v_c);
+  m.v_e = float(preset->v_e);
+  m.n0 = float(preset->n0);
+  m.n1 = float(preset->n1);
+  return m;
+}
+
+WSurfaceMaterial surface_material(const SurfaceAppearance& appearance) {
+  WSurfaceMaterial m{};
+  m.color = color4(appearance.color, "color", 0);
+  m.kind = appearance.coated ? 1 : 0;
+  m.light = -1;
+  require_range(appearance.roughness, 0, 1, "roughness");
+  require_range(appearance.ior, 1, 3, "ior");
+  m.roughness = float(appearance.roughness);
+  m.ior = float(appearance.ior);
+  return m;
+}
+
+}  // namespace wale

@@ -1,0 +1,97 @@
+#include "host/ply_tree.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+
+#include "geom/error.h"
+#include "host/program.h"
+#include "shared/wale_types.h"
+
+namespace wale {
+namespace {
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+// Words of x (or y, z) of a leaf: every lane may load its four points, masked lanes too.
+uint32_t leaf_stride(const PlyPatch& patch) {
+  const uint32_t points = (patch.intervals + 3) * patch.plies;
+  return (std::max(points, W_LEAF_LANES + 3 * patch.plies) + 3) / 4 * 4;
+}
+
+void write_header(const PlyPatch& patch, uint32_t* leaf) {
+  const bool open = !patch.ghost_ends;
+  const uint32_t lanes = patch.intervals * patch.plies;
+  leaf[W_LEAF_RADIUS] = std::bit_cast<uint32_t>(patch.radius);
+  leaf[W_LEAF_SEGMENT] = patch.first_vertex + patch.first;
+  leaf[W_LEAF_STRIDE] = patch.count;
+  leaf[W_LEAF_MATERIAL] = patch.material;
+  leaf[W_LEAF_LAYOUT] = patch.plies | lanes << 8 | leaf_stride(patch) << 16;
+  leaf[W_LEAF_TAU] = std::bit_cast<uint32_t>(patch.tau);
+  leaf[W_LEAF_CELL] = patch.cell;
+  leaf[W_LEAF_FABRIC] = patch.fabric;
+  leaf[W_LEAF_PLY] = patch.first_ply;
+  leaf[W_LEAF_ENDS] =
+      (open && patch.first == 0 ? 1u : 0u) | (open && patch.first + patch.intervals + 1 == patch.count ? 2u : 0u);
+}
+
+}  // namespace
+
+PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, const Buffer<float>& vertices,
+                       std::span<const Box> group_box) {
+  PlyTree tree;
+  const double start = now();
+  size_t words = 0;
+  tree.leaf_offset.reserve(patches.size());
+  for (const PlyPatch& patch : patches) {
+    if (patch.plies < 1 || patch.plies > 8 || patch.intervals < 1 || patch.intervals * patch.plies > W_LEAF_LANES ||
+        patch.first + patch.intervals >= patch.count)
+      bug("ply tree: patch of {} x {} segments at {} of {} vertices", patch.intervals, patch.plies, patch.first,
+          patch.count);
+    tree.leaf_offset.push_back(uint32_t(words / 4));
+    words += W_LEAF_HEADER + 3 * leaf_stride(patch);
+  }
+  if (words / 4 >= 1u << 28 || words * 4 > device.traits().max_alloc_bytes)
+    device_error("ply tree: leaves of {} MB do not fit one buffer of {}; use fewer repeats", words * 4 >> 20,
+                 device.traits().name);
+  std::vector<uint32_t> headers(words, 0), run_of(4 * patches.size());
+  for (size_t i = 0; i < patches.size(); ++i) {
+    write_header(patches[i], headers.data() + size_t(tree.leaf_offset[i]) * 4);
+    const uint32_t run[] = {tree.leaf_offset[i], patches[i].first_vertex, patches[i].count, patches[i].ghost_ends};
+    std::copy_n(run, 4, run_of.begin() + 4 * i);
+  }
+  tree.leaves = Buffer<uint32_t>(device, headers);
+  std::vector<Box> boxes(patches.size());
+  if (!patches.empty()) {
+    const Buffer<uint32_t> runs(device, run_of);
+    Buffer<float> box_buffer(device, 6 * patches.size());
+    cl::Kernel pack(build_program(device, "pack.cl"), "pack_leaves");
+    pack.setArg(0, runs.cl());
+    pack.setArg(1, vertices.cl());
+    pack.setArg(2, tree.leaves.cl());
+    pack.setArg(3, box_buffer.cl());
+    pack.setArg(4, uint32_t(patches.size()));
+    device.queue().enqueueNDRangeKernel(pack, cl::NullRange, device.global(patches.size()), device.local());
+    const std::vector<float> flat = box_buffer.read(device);
+    for (size_t i = 0; i < boxes.size(); ++i) {
+      std::copy_n(flat.begin() + 6 * i, 3, boxes[i].lo);
+      std::copy_n(flat.begin() + 6 * i + 3, 3, boxes[i].hi);
+      for (int k = 0; k < 3; ++k) {
+        tree.bounds.lo[k] = std::min(tree.bounds.lo[k], boxes[i].lo[k]);
+        tree.bounds.hi[k] = std::max(tree.bounds.hi[k], boxes[i].hi[k]);
+      }
+    }
+    tree.root = 0;
+  }
+  tree.pack_seconds = now() - start;
+
+  std::vector<uint32_t> cells(patches.size());
+  for (size_t i = 0; i < patches.size(); ++i) cells[i] = patches[i].cell;
+  const WideTree wide = build_wide_tree(boxes, tree.leaf_offset, cells, group_box);
+  tree.nodes = Buffer<uint32_t>(device, wide.words);
+  tree.node_cell = Buffer<uint32_t>(device, wide.node_cell);
+  tree.build_seconds = now() - start - tree.pack_seconds;
+  return tree;
+}
+
+}  // namespace wale

@@ -1,0 +1,44 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geom/wide_tree.h"
+#include "host/device.h"
+
+namespace wale {
+
+/// A patch of plies, in numbers of the device's vertex buffer; see W_LEAF_* in kernels/shared/wale_types.h.
+struct PlyPatch {
+  uint32_t first_vertex = 0;  ///< of the run's ply 0
+  uint32_t count = 0;         ///< vertices per ply of the run
+  uint32_t first = 0;         ///< first segment, counted inside the run
+  uint32_t intervals = 0;
+  uint32_t plies = 1;
+  uint32_t cell = 0, fabric = 0, material = 0;
+  uint32_t first_ply = 0;  ///< number of the run's ply 0, over all fabrics
+  float radius = 0;        ///< metres
+  float tau = 0;           ///< optical radius; -1 or less = opaque
+  bool ghost_ends = false;
+};
+
+/// Leaves and tree over patches, on the device.
+struct PlyTree {
+  Buffer<uint32_t> leaves, nodes, node_cell;
+  std::vector<uint32_t> leaf_offset;  ///< per patch, in 16-byte units
+  uint32_t root = 0xffffffffu;        ///< W_NONE when there is no patch
+  Box bounds;
+  double pack_seconds = 0, build_seconds = 0;
+
+  /// Hit code of segment k (inside the patch) of ply p.
+  uint32_t hit_code(size_t patch, uint32_t plies, uint32_t k, uint32_t p) const {
+    return leaf_offset[patch] << 4 | (k * plies + p);
+  }
+};
+
+/// Packs leaves on the device and builds the tree on the host. Patches of one cell must follow one another in ascending
+/// order of cells. group_box: see build_wide_tree. Throws a device error when a leaf buffer would not fit.
+PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, const Buffer<float>& vertices,
+                       std::span<const Box> group_box = {});
+
+}  // namespace wale

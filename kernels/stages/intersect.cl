@@ -1,0 +1,26 @@
+/* Nearest hit of every live path: global stage down the tree over cells, local stage on their plies. */
+#include "geometry/traverse.clh"
+#include "stages/path_state.clh"
+#include "stages/scene_args.clh"
+#include "sampling/dimensions.clh"
+
+__kernel void intersect(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, __global const uint* list,
+                        __global const uint* counts, uint count_index, uint depth) {
+  const uint i = get_global_id(0);
+  if (i >= counts[count_index]) return;
+  const uint slot = list[i];
+  const WScene scene = W_SCENE;
+  const float4 o = ray_o[slot], l = ray_l[slot], d = ray_d[slot];
+  WRay ray;
+  ray.o = o.xyz;
+  ray.l = l.xyz;
+  ray.d = d.xyz;
+  ray.tmax = 1e30f;
+  ray.key = w_ray_key(w_slot_pixel(&frame, slot), w_slot_sample(&frame, slot), depth, W_RAY_PATH, frame.seed);
+  ray.skip = as_uint(l.w);
+  ray.skip_triangle = as_uint(o.w);
+  const WHit h = w_closest(&scene, &ray);
+  hit[slot] = (uint4)(as_uint(h.t), h.kind, h.code, 0u);
+  hit_uv[slot] = (float2)(h.u, h.v);
+  mask[slot] = h.kind == W_HIT_NONE ? W_BIN_MISS : h.kind == W_HIT_PLY ? W_BIN_PLY : W_BIN_SURFACE;
+}

@@ -1,0 +1,23 @@
+/* Paths that leave the scene gather the environment and end. */
+#include "lights.clh"
+#include "stages/light_args.clh"
+#include "stages/path_state.clh"
+
+__kernel void miss(WFrame frame, W_PATH_PARAMS, W_LIGHT_PARAMS, __global const uint* list, __global const uint* counts,
+                   uint count_index) {
+  const uint i = get_global_id(0);
+  if (i >= counts[count_index]) return;
+  const uint slot = list[i];
+  mask[slot] = 0u;
+#ifdef W_HAS_ENVIRONMENT
+  const WLights lights = W_LIGHTS;
+  const float3 d = ray_d[slot].xyz;
+  const float density = ray_d[slot].w;
+  float share = 1.0f;  // of the two ways to arrive here, light and BSDF sampling
+  if (density >= 0.0f) {
+    if (frame.light_sampling == 1) return;
+    if (frame.light_sampling == 0) share = w_mis(density, w_environment_pdf(&lights, d));
+  }
+  radiance[slot].xyz += weight[slot].xyz * w_environment_radiance(&lights, d) * share;
+#endif
+}

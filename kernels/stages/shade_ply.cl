@@ -1,0 +1,103 @@
+/* A path meets a ply (KNIT21 section 3.3): choose one lobe of the ply BSDF, connect that lobe to a light, go on along
+   that lobe. A direction on the outer side of the surface leaves at the hit; any other one leaves from the middle of the
+   chord through the ply (docs/appearance.md), and meets whatever lies ahead, its own segment excepted. */
+#include "appearance/ply_bsdf.clh"
+#include "geometry/ply_surface.clh"
+#include "lights.clh"
+#include "sampling/dimensions.clh"
+#include "sampling/sobol.clh"
+#include "stages/continue_path.clh"
+#include "stages/light_args.clh"
+#include "stages/path_state.clh"
+#include "stages/scene_args.clh"
+
+/* Offset from the anchor at which a direction leaves: the hit moved out by a few ulps, or the chord's middle. */
+static inline float3 w_leave(const WPlySurface* s, float3 out, float3 middle, float3 w) {
+  return dot(w, s->n) > 0.0f ? out : middle;
+}
+
+__kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PARAMS, __global const float* vertices,
+                        __global const WPlyMaterial* materials, __global float4* aov, __global const uint* list,
+                        __global const uint* counts, uint count_index, uint depth) {
+  const uint i = get_global_id(0);
+  if (i >= counts[count_index]) return;
+  const uint slot = list[i];
+  const WScene scene = W_SCENE;
+#ifdef W_HAS_LIGHTS
+  const WLights lights = W_LIGHTS;
+#endif
+
+  WRay ray;
+  ray.o = ray_o[slot].xyz;
+  ray.l = ray_l[slot].xyz;
+  ray.d = ray_d[slot].xyz;
+  const uint4 raw = hit[slot];
+  WHit h;
+  h.t = as_float(raw.x);
+  h.kind = raw.y;
+  h.code = raw.z;
+  h.u = hit_uv[slot].x;
+  h.v = hit_uv[slot].y;
+  const WPlySurface s = w_ply_surface(&scene, vertices, &ray, &h);
+  const float3 wv = -ray.d;
+  const WPlyShade shade = w_ply_setup(materials[s.material], s.smooth_t, s.smooth_n, wv);
+
+#ifdef W_AOVS
+  if (depth == 0) {
+    __global float4* a = aov + (ulong)slot * 4;
+    a[0] = (float4)(shade.a[0] + shade.a[1] + shade.a[2], h.t);
+    a[1] = (float4)(s.smooth_n, s.phi);
+    a[2] = (float4)(s.smooth_t, s.length);
+    a[3] = (float4)(s.anchor + s.x, as_float(s.ply));
+  }
+#endif
+
+  const WSampler sampler = w_sampler(w_slot_pixel(&frame, slot), w_slot_sample(&frame, slot), frame.seed);
+  const float4 u = w_sample4(&sampler, W_SET_SCATTER(depth));
+  float left;
+  const int lobe = w_ply_choose(&shade, u.x, &left);
+  const float3 lobe_weight = weight[slot].xyz * shade.a[lobe] / shade.q[lobe];
+
+  const float3 radial = s.x - s.t * dot(s.x, s.t);
+  const float3 out = s.x + radial * 9.5367432e-7f;  // 4 * 2^-22 (science of 8.5: beyond the error of the hit)
+  const float sin2 = fmax(1.0f - dot(ray.d, s.t) * dot(ray.d, s.t), 1e-6f);
+  const float3 middle = s.x + ray.d * (s.radius * sqrt(fmax(0.0f, 1.0f - s.h * s.h)) * rsqrt(sin2));
+
+  uint bins = 0u;
+#ifdef W_HAS_LIGHTS
+  if (frame.light_sampling != 2) {
+    // One light sample seen from each of the two places a direction may leave from. Each counts only on its own side;
+    // where both do (a thin set), one is taken at random and counts twice.
+    const float4 ul = w_sample4(&sampler, W_SET_LIGHT(depth));
+    WLightSample a = w_light_sample(&lights, s.anchor + out, ul);
+    WLightSample b = w_light_sample(&lights, s.anchor + middle, ul);
+    const int a_ok = a.pdf > 0.0f && dot(a.direction, s.n) > 0.0f;
+    const int b_ok = b.pdf > 0.0f && !(dot(b.direction, s.n) > 0.0f);
+    if (a_ok || b_ok) {
+      const int take_b = a_ok && b_ok ? left < 0.5f : b_ok;
+      const WLightSample l = take_b ? b : a;
+      const float twice = a_ok && b_ok ? 2.0f : 1.0f;
+      const float p = w_ply_pdf(&shade, lobe, l.direction);
+      const float share = frame.light_sampling == 0 ? w_mis(l.pdf, p) : 1.0f;
+      const float3 c = lobe_weight * l.radiance * (twice * p * share / l.pdf);
+      if (w_max3(c) > 0.0f) {
+        bins |= W_BIN_SHADOW;
+        shadow_o[slot] = (float4)(s.anchor, as_float(W_NONE));
+        shadow_l[slot] = (float4)(take_b ? middle : out, as_float(h.code));
+        shadow_d[slot] = (float4)(l.direction, l.distance * W_SHADOW_END);
+        shadow_c[slot] = (float4)(c, 0.0f);
+      }
+    }
+  }
+#endif
+
+  const float3 w = w_ply_sample(&shade, lobe, u.y, u.z, u.w);
+  const float density = w_ply_pdf(&shade, lobe, w);
+  float3 next = lobe_weight;
+  bins |= w_continue(&frame, &next, depth, w_sample4(&sampler, W_SET_ROULETTE(depth)).x);
+  weight[slot] = (float4)(next, 0.0f);
+  ray_o[slot] = (float4)(s.anchor, as_float(W_NONE));
+  ray_l[slot] = (float4)(w_leave(&s, out, middle, w), as_float(h.code));
+  ray_d[slot] = (float4)(w, density);
+  mask[slot] = bins;
+}

@@ -1,0 +1,117 @@
+/* A path meets a prop, the ground or the surface of a light. */
+#include "appearance/surface.clh"
+#include "lights.clh"
+#include "sampling/dimensions.clh"
+#include "sampling/sobol.clh"
+#include "stages/continue_path.clh"
+#include "stages/light_args.clh"
+#include "stages/path_state.clh"
+
+/* Per triangle: corners 9, corner normals 9, material 1, unused 1. */
+#define W_TRIANGLE_WORDS 20
+
+__kernel void shade_surface(WFrame frame, W_PATH_PARAMS, W_LIGHT_PARAMS, __global const float* triangles,
+                            __global const WSphere* spheres, __global const WSurfaceMaterial* materials,
+                            __global float4* aov, __global const uint* list, __global const uint* counts,
+                            uint count_index, uint depth) {
+  const uint i = get_global_id(0);
+  if (i >= counts[count_index]) return;
+  const uint slot = list[i];
+  const WLights lights = W_LIGHTS;
+  const uint4 raw = hit[slot];
+  const float2 uv = hit_uv[slot];
+  const float3 d = ray_d[slot].xyz;
+  const float density = ray_d[slot].w;
+  const float t = as_float(raw.x);
+  const float3 from = ray_o[slot].xyz + ray_l[slot].xyz;
+
+  float3 p, ng, ns;
+  uint material, skip_triangle = W_NONE;
+  if (raw.y == W_HIT_TRIANGLE) {
+    __global const float* v = triangles + (ulong)raw.z * W_TRIANGLE_WORDS;
+    const float3 a = vload3(0, v), b = vload3(1, v), c = vload3(2, v);
+    p = a + uv.x * (b - a) + uv.y * (c - a);
+    ng = normalize(cross(b - a, c - a));
+    ns = (1.0f - uv.x - uv.y) * vload3(3, v) + uv.x * vload3(4, v) + uv.y * vload3(5, v);
+    ns = dot(ns, ns) > 0.0f ? normalize(ns) : ng;
+    material = as_uint(v[18]);
+    skip_triangle = raw.z;
+  } else {
+    const WSphere sphere = spheres[raw.z];
+    ng = normalize(from + t * d - sphere.center.xyz);
+    ns = ng;
+    p = sphere.center.xyz + sphere.center.w * ng;
+    material = (uint)sphere.material;
+  }
+  const WSurfaceMaterial m = materials[material];
+  const int front = dot(ng, d) < 0.0f;
+
+  float3 gathered = radiance[slot].xyz;
+  if (w_max3(m.emission.xyz) > 0.0f && (front || !(m.emission.w != 0.0f))) {
+    float share = 1.0f;
+    if (density >= 0.0f && frame.light_sampling == 1) share = 0.0f;
+    if (density >= 0.0f && frame.light_sampling == 0 && m.light >= 0) {
+      const float pdf = raw.y == W_HIT_TRIANGLE ? w_light_pdf_triangle(&lights, (uint)m.light, ng, d, t)
+                                                : w_light_pdf_sphere(&lights, (uint)m.light, from, d, t);
+      share = w_mis(density, pdf);
+    }
+    gathered += weight[slot].xyz * m.emission.xyz * share;
+    radiance[slot].xyz = gathered;
+  }
+
+  const float3 n_geo = front ? ng : -ng;
+  float3 n = dot(ns, n_geo) < 0.0f ? -ns : ns;
+  // A shading normal that faces away from the viewer would lose energy: lean it back to grazing.
+  const float facing = dot(n, d);
+  if (facing > -1e-3f) n = normalize(n - d * (facing + 1e-3f));
+
+#ifdef W_AOVS
+  if (depth == 0) {
+    __global float4* a = aov + (ulong)slot * 4;
+    a[0] = (float4)(m.color.xyz, t);
+    a[1] = (float4)(n, uv.x);
+    a[2] = (float4)(0.0f, 0.0f, 0.0f, uv.y);
+    a[3] = (float4)(p, as_float(W_NONE));
+  }
+#endif
+
+  // Rounding of the hit: a few ulps of the largest coordinate and of the way travelled.
+  const float reach = fmax(fmax(fabs(p.x), fabs(p.y)), fmax(fabs(p.z), t));
+  const float3 lift = n_geo * (reach * 4e-7f);
+  const WSampler sampler = w_sampler(w_slot_pixel(&frame, slot), w_slot_sample(&frame, slot), frame.seed);
+  const float4 u = w_sample4(&sampler, W_SET_SCATTER(depth));
+  const float3 wv = -d;
+
+  uint bins = 0u;
+  if (w_max3(m.color.xyz) > 0.0f || m.kind != 0) {
+#ifdef W_HAS_LIGHTS
+    if (frame.light_sampling != 2) {
+      const WLightSample l = w_light_sample(&lights, p, w_sample4(&sampler, W_SET_LIGHT(depth)));
+      if (l.pdf > 0.0f && dot(l.direction, n_geo) > 0.0f) {
+        float pdf;
+        const float3 f = w_surface_eval(m, n, wv, l.direction, &pdf);
+        const float share = frame.light_sampling == 0 ? w_mis(l.pdf, pdf) : 1.0f;
+        const float3 c = weight[slot].xyz * f * l.radiance * (share / l.pdf);
+        if (w_max3(c) > 0.0f) {
+          bins |= W_BIN_SHADOW;
+          shadow_o[slot] = (float4)(p, as_float(skip_triangle));
+          shadow_l[slot] = (float4)(lift, as_float(W_NONE));
+          shadow_d[slot] = (float4)(l.direction, l.distance * W_SHADOW_END);
+          shadow_c[slot] = (float4)(c, 0.0f);
+        }
+      }
+    }
+#endif
+    float3 w;
+    float pdf;
+    float3 next = weight[slot].xyz * w_surface_sample(m, n, wv, u.x, u.y, u.z, &w, &pdf);
+    if (pdf > 0.0f && dot(w, n_geo) > 0.0f) {
+      bins |= w_continue(&frame, &next, depth, w_sample4(&sampler, W_SET_ROULETTE(depth)).x);
+      weight[slot] = (float4)(next, 0.0f);
+      ray_o[slot] = (float4)(p, as_float(skip_triangle));
+      ray_l[slot] = (float4)(lift, as_float(W_NONE));
+      ray_d[slot] = (float4)(w, pdf);
+    }
+  }
+  mask[slot] = bins;
+}
