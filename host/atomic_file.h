@@ -1,0 +1,33 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+namespace wale {
+
+/// A file that appears whole or not at all: written under a temporary name in the same folder, renamed by commit().
+/// When the object dies without commit(), nothing is left behind and an older file of that name is untouched.
+class AtomicFile {
+ public:
+  /// Throws a user error when the folder does not exist or cannot be written, or `file` is a folder.
+  explicit AtomicFile(const std::filesystem::path& file);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Where to write; it has the same suffix as the file.
+  const std::filesystem::path& temporary() const { return temporary_; }
+  /// Renames into place. Throws a user error when the disk refuses.
+  void commit();
+
+ private:
+  std::filesystem::path file_, temporary_;
+  bool committed_ = false;
+};
+
+/// Writes a whole text (or any bytes) atomically. Throws a user error when it does not fit on the disk.
+void write_text_file(const std::filesystem::path& file, const std::string& text);
+
+/// Throws the user error that an AtomicFile of this name would throw, and leaves nothing behind.
+void require_writable_path(const std::filesystem::path& file);
+
+}  // namespace wale

@@ -1,0 +1,108 @@
+#include "host/commands.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "geom/error.h"
+#include "host/atomic_file.h"
+#include "host/compare.h"
+#include "host/export_curves.h"
+#include "host/progress.h"
+#include "host/report.h"
+#include "host/stop.h"
+
+namespace wale {
+namespace {
+
+World world_of(const Scene& scene, const Loaders& loaders, bool quiet) {
+  Progress bar("knit", quiet);
+  World world = build_world(scene, loaders, [&](const std::string& step, double fraction) {
+    if (step == "knit") bar.update(fraction);
+  });
+  bar.finish();
+  return world;
+}
+
+void deliver(const std::filesystem::path& json_file, const std::string& json, const std::string& text) {
+  if (json_file == "-")
+    fmt::print("{}", json);
+  else if (!json_file.empty())
+    write_text_file(json_file, json);
+  if (json_file != "-") fmt::print("{}", text);
+}
+
+}  // namespace
+
+int run_build(const SceneArgs& args, const std::filesystem::path& json, const Loaders& loaders) {
+  const Scene scene = read_scene(args.scene, args.set);
+  const World world = world_of(scene, loaders, args.quiet);
+  deliver(json, build_report_json(world), build_report_text(world));
+  return 0;
+}
+
+int run_plan(const SceneArgs& args, const std::filesystem::path& json, const Loaders& loaders) {
+  const Scene scene = read_scene(args.scene, args.set);
+  const Device device = Device::open(args.device);
+  const World world = world_of(scene, loaders, args.quiet);
+  const SceneDevice on_device(device, world, local_stage(scene.integrator));
+  const Features features = analyse(world, scene.integrator, true, int(device.traits().lanes));
+  deliver(json, plan_json(world, on_device, scene.integrator, features),
+          plan_text(world, on_device, scene.integrator, features));
+  return 0;
+}
+
+int run_export(const SceneArgs& args, const std::filesystem::path& output, const Loaders& loaders) {
+  require_writable_path(output);
+  const Scene scene = read_scene(args.scene, args.set);
+  const Device device = Device::open(args.device);
+  const World world = world_of(scene, loaders, args.quiet);
+  const SceneDevice on_device(device, world, local_stage(scene.integrator));
+  const std::vector<float> vertices = on_device.fabric().vertices.read(device);
+  std::vector<ExportCurve> curves;
+  size_t first = 0;  // vertices of the fabrics follow one another
+  for (const auto& fabric : world.fabrics) {
+    for (const auto& run : fabric.runs)
+      for (int ply = 0; ply < fabric.plies; ++ply) {
+        ExportCurve curve;
+        curve.radius = float(fabric.ply_radius);
+        const uint32_t skip = run.ghost_ends ? 1 : 0;
+        for (uint32_t k = skip; k + skip < run.count; ++k) {
+          const float* v = &vertices[(first + run.first_vertex + size_t(ply) * run.count + k) * W_VERTEX_WORDS];
+          curve.points.push_back({float(v[0] + world.origin.x), float(v[1] + world.origin.y), float(v[2] + world.origin.z)});
+        }
+        curves.push_back(std::move(curve));
+      }
+    first += fabric.anchors.size();
+  }
+  export_curves(curves, output);
+  return 0;
+}
+
+int run_compare(const std::filesystem::path& a, const std::filesystem::path& b, double max_rmse) {
+  const CompareReport report = compare_images(read_image(a), read_image(b), a.string(), b.string());
+  fmt::print("{}", report.text());
+  if (max_rmse >= 0 && !(report.rmse <= max_rmse))
+    user_error("compare: RMSE {:.6g} is above --max-rmse {:.6g}", report.rmse, max_rmse);
+  return 0;
+}
+
+int run_devices() {
+  const auto devices = Device::list();
+  if (devices.empty()) Device::open();  // says what to install
+  for (size_t i = 0; i < devices.size(); ++i) {
+    const auto& d = devices[i];
+    fmt::print("{}: {}\n   {} {}, {}\n   {} compute units, {:.1f} GiB, at most {:.1f} GiB in one buffer, fp64 {}\n"
+               "   vectors of {} lanes, {} paths in flight, work-groups of {}\n",
+               i, d.name, d.platform, d.driver, d.version, d.compute_units, double(d.global_bytes) / (1u << 30),
+               double(d.max_alloc_bytes) / (1u << 30), d.fp64 ? "yes" : "no", d.lanes, d.pool, d.local_size);
+  }
+  return 0;
+}
+
+int run_schema() {
+  fmt::print("{}", scene_schema());
+  return 0;
+}
+
+}  // namespace wale

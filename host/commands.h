@@ -1,0 +1,36 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "host/world.h"
+
+namespace wale {
+
+/// Options that several commands share.
+struct SceneArgs {
+  std::filesystem::path scene;
+  std::vector<std::string> set;
+  unsigned device = 0;
+  std::filesystem::path kernel_dir;
+  bool quiet = false;
+};
+
+struct RenderArgs : SceneArgs {
+  std::vector<std::filesystem::path> outputs;
+  int spp = 0;
+  double seconds = 0;
+  std::string size;
+  std::filesystem::path stats;
+};
+
+/// The commands of the program; each returns the exit status 0 or throws an Error.
+int run_render(const RenderArgs& args, const Loaders& loaders);
+int run_build(const SceneArgs& args, const std::filesystem::path& json, const Loaders& loaders);
+int run_plan(const SceneArgs& args, const std::filesystem::path& json, const Loaders& loaders);
+int run_export(const SceneArgs& args, const std::filesystem::path& output, const Loaders& loaders);
+int run_compare(const std::filesystem::path& a, const std::filesystem::path& b, double max_rmse);
+int run_devices();
+int run_schema();
+
+}  // namespace wale

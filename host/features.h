@@ -1,0 +1,36 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "host/fabric_device.h"
+
+namespace wale {
+
+struct World;
+struct IntegratorScene;
+
+/// What a scene asks for. Structure that is absent is neither compiled, launched nor stored; values are run-time data.
+struct Features {
+  bool plies = false, triangles = false, spheres = false;
+  bool environment = false, lights = false;  ///< lights: something is sampled by next-event estimation
+  bool aovs = false;
+  LocalStage local_stage = LocalStage::exact;
+  int lanes = 1;
+
+  /// Definitions for the kernels.
+  std::string options() const;
+};
+
+/// One decision and the object or key that asks for it; the lines of `wale plan`.
+struct Reason {
+  std::string feature;
+  bool used = false;
+  std::string because;
+};
+
+/// Stage that a scene's integrator.local_stage names.
+LocalStage local_stage(const IntegratorScene& integrator);
+Features analyse(const World& world, const IntegratorScene& integrator, bool aovs, int device_lanes);
+std::vector<Reason> explain(const World& world, const IntegratorScene& integrator, const Features& features);
+
+}  // namespace wale

@@ -1,0 +1,65 @@
+#include "host/film.h"
+
+#include <array>
+#include <cmath>
+
+namespace wale {
+namespace {
+constexpr int kScrambles = 8;
+}
+
+Image develop(const FilmSums& sums, const double origin[3]) {
+  Image image;
+  image.width = sums.width;
+  image.height = sums.height;
+  image.channels = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "samples"};
+  const bool aov = !sums.aov.empty();
+  if (aov)
+    for (const char* name : {"albedo.R", "albedo.G", "albedo.B", "depth.Z", "normal.X", "normal.Y", "normal.Z", "uv.U",
+                             "tangent.X", "tangent.Y", "tangent.Z", "uv.V", "position.X", "position.Y", "position.Z",
+                             "ply.id"})
+      image.channels.push_back(name);
+  const size_t pixels = size_t(sums.width) * sums.height, stride = image.channels.size();
+  image.pixels.assign(pixels * stride, 0.0f);
+  for (size_t i = 0; i < pixels; ++i) {
+    float* out = image.pixels.data() + i * stride;
+    std::array<double, 3> sum{};
+    double count = 0;
+    int groups = 0;
+    for (int g = 0; g < kScrambles; ++g) {
+      const w_float4& s = sums.radiance[i * kScrambles + g];
+      sum[0] += s.x, sum[1] += s.y, sum[2] += s.z;
+      count += s.w;
+      groups += s.w > 0;
+    }
+    if (count == 0) continue;
+    for (int c = 0; c < 3; ++c) out[c] = float(sum[c] / count);
+    // Scrambles are independent of each other: with m_g the mean of scramble g and weights w_g = n_g/n, the variance of
+    // the pixel is sum w_g^2 (m_g - m)^2 * G/(G-1), exact for equal counts.
+    if (groups > 1)
+      for (int c = 0; c < 3; ++c) {
+        double spread = 0;
+        for (int g = 0; g < kScrambles; ++g) {
+          const w_float4& s = sums.radiance[i * kScrambles + g];
+          if (s.w == 0) continue;
+          const double mean = (c == 0 ? s.x : c == 1 ? s.y : s.z) / s.w, w = s.w / count;
+          spread += w * w * (mean - sum[c] / count) * (mean - sum[c] / count);
+        }
+        out[3 + c] = float(spread * groups / (groups - 1));
+      }
+    out[6] = float(count);
+    if (!aov) continue;
+    const w_float4* a = &sums.aov[i * 4];
+    const double k = 1 / count;
+    const std::array<double, 15> v = {a[0].x * k, a[0].y * k, a[0].z * k, a[0].w * k, a[1].x * k,
+                                      a[1].y * k, a[1].z * k, a[1].w * k, a[2].x * k, a[2].y * k,
+                                      a[2].z * k, a[2].w * k, a[3].x * k, a[3].y * k, a[3].z * k};
+    for (size_t c = 0; c < v.size(); ++c) out[7 + c] = float(v[c]);
+    // Features are averages over all samples; those that met nothing count as zero, and have no place in the world.
+    for (int c = 0; c < 3; ++c) out[7 + 12 + c] += float(a[0].w > 0 ? origin[c] : 0);
+    out[22] = sums.ply[i] == W_NONE ? -1.0f : float(sums.ply[i]);
+  }
+  return image;
+}
+
+}  // namespace wale

@@ -1,0 +1,22 @@
+#pragma once
+#include <vector>
+
+#include "host/image.h"
+#include "shared/wale_types.h"
+
+namespace wale {
+
+/// What the wavefront gathered, as sums.
+struct FilmSums {
+  int width = 0, height = 0;
+  std::vector<w_float4> radiance;  ///< width*height*8: per scramble rgb and count
+  std::vector<w_float4> aov;       ///< width*height*4, or empty: albedo+depth, normal+u, tangent+v, position
+  std::vector<uint32_t> ply;       ///< width*height, or empty: ply seen by the first sample
+};
+
+/// Pixel means, the variance of each mean (from the spread of the scrambles that hold samples), sample counts and, where
+/// gathered, the first-hit features. `origin` is added back to positions. Channels: R G B, variance.R/G/B, samples,
+/// albedo.R/G/B, depth.Z, normal.X/Y/Z, tangent.X/Y/Z, position.X/Y/Z, uv.U/V, ply.id (-1 where no ply was seen first).
+Image develop(const FilmSums& sums, const double origin[3]);
+
+}  // namespace wale

@@ -1,0 +1,147 @@
+// The only file that knows OpenImageIO.
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geom/error.h"
+#include "host/atomic_file.h"
+#include "host/image.h"
+#include "host/schema.h"
+
+namespace wale {
+namespace {
+
+constexpr uint64_t kMaxValues = uint64_t(1) << 32;
+
+std::string suffix_of(const std::filesystem::path& file) {
+  std::string suffix = file.extension().string();
+  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return suffix;
+}
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text.empty() ? "unknown reason" : text;
+}
+
+// Fixed dither in [0,1): the finaliser of MurmurHash3 on the pixel, so that smooth shades show no bands and the same
+// image gives the same bytes.
+double dither(int x, int y, int channel) {
+  uint32_t h = uint32_t(x) * 0x9E3779B1u ^ uint32_t(y) * 0x85EBCA77u ^ uint32_t(channel) * 0xC2B2AE3Du;
+  h = (h ^ (h >> 16)) * 0x85EBCA6Bu;
+  h = (h ^ (h >> 13)) * 0xC2B2AE35u;
+  return (h ^ (h >> 16)) * 0x1p-32;
+}
+
+void check_finite(const Image& image, const std::string& file) {
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (size_t c = 0; c < image.channels.size(); ++c)
+        if (!std::isfinite(image.at(x, y)[c]))
+          user_error("{}: pixel ({}, {}), channel {}: {} is not a finite number", file, x, y, image.channels[c],
+                     image.at(x, y)[c]);
+}
+
+// Integer files are sRGB encoded unless they say otherwise; alpha never is.
+void decode_srgb(Image& image, const OIIO::ImageSpec& spec) {
+  for (size_t c = 0; c < image.channels.size(); ++c) {
+    if (int(c) == spec.alpha_channel) continue;
+    for (size_t i = c; i < image.pixels.size(); i += image.channels.size())
+      image.pixels[i] = static_cast<float>(srgb_to_linear(image.pixels[i]));
+  }
+}
+
+std::vector<unsigned char> display_bytes(const Image& image, double exposure, const std::string& view) {
+  int rgb[3] = {0, 0, 0};
+  for (int c = 0; c < 3; ++c) {
+    const auto found = std::find(image.channels.begin(), image.channels.end(), std::string(1, "RGB"[c]));
+    rgb[c] = found != image.channels.end() ? int(found - image.channels.begin())
+                                           : std::min(c, int(image.channels.size()) - 1);
+  }
+  std::vector<unsigned char> bytes(size_t(image.width) * image.height * 3);
+  auto out = bytes.begin();
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const float* pixel = image.at(x, y);
+      const float linear[3] = {pixel[rgb[0]], pixel[rgb[1]], pixel[rgb[2]]};
+      float display[3];
+      view_transform(linear, exposure, view, display);
+      for (int c = 0; c < 3; ++c)
+        *out++ = static_cast<unsigned char>(std::min(255.0, std::floor(255.0 * display[c] + dither(x, y, c))));
+    }
+  return bytes;
+}
+
+// The PNG is made in memory: OpenImageIO's writer does not notice a full disk.
+std::string png_file(const Image& image, double exposure, const std::string& view) {
+  const auto bytes = display_bytes(image, exposure, view);
+  OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  OIIO::Filesystem::IOVecOutput memory;
+  const auto output = OIIO::ImageOutput::create("png");
+  if (!output || !output->set_ioproxy(&memory) || !output->open("memory.png", spec) ||
+      !output->write_image(spec.format, bytes.data()) || !output->close())
+    bug("PNG: {}", one_line(output ? output->geterror() : OIIO::geterror()));
+  return {memory.buffer().begin(), memory.buffer().end()};
+}
+
+void write_exr(const Image& image, const std::filesystem::path& file) {
+  OIIO::ImageSpec spec(image.width, image.height, int(image.channels.size()), OIIO::TypeDesc::FLOAT);
+  spec.channelnames = image.channels;
+  spec.attribute("compression", "zip");
+  AtomicFile out(file);
+  const auto output = OIIO::ImageOutput::create(out.temporary().string());
+  if (!output) bug("{}: OpenImageIO cannot write this suffix: {}", file.string(), one_line(OIIO::geterror()));
+  if (!output->open(out.temporary().string(), spec) || !output->write_image(spec.format, image.pixels.data()) ||
+      !output->close())
+    user_error("{}: cannot be written: {}", file.string(), one_line(output->geterror()));
+  out.commit();
+}
+
+}  // namespace
+
+Image read_image(const std::filesystem::path& file, bool finite) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) user_error("{}: no such image file", file.string());
+  const auto input = OIIO::ImageInput::open(file.string());
+  if (!input) user_error("{}: cannot be read as an image: {}", file.string(), one_line(OIIO::geterror()));
+  const OIIO::ImageSpec& spec = input->spec();
+  const uint64_t values = uint64_t(std::max(0, spec.width)) * std::max(0, spec.height) * std::max(0, spec.nchannels);
+  if (values == 0 || values > kMaxValues || spec.deep)
+    user_error("{}: {} x {} with {} channels{} cannot be used", file.string(), spec.width, spec.height, spec.nchannels,
+               spec.deep ? " (deep)" : "");
+  Image image;
+  image.width = spec.width;
+  image.height = spec.height;
+  image.channels = spec.channelnames;
+  image.pixels.resize(values);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data()))
+    user_error("{}: cannot be read as an image: {}", file.string(), one_line(input->geterror()));
+  const std::string space = spec.get_string_attribute("oiio:ColorSpace", "sRGB");
+  if (!spec.format.is_floating_point() && !OIIO::Strutil::iequals(space, "linear")) decode_srgb(image, spec);
+  if (finite) check_finite(image, file.string());
+  return image;
+}
+
+void write_image(const Image& image, const std::filesystem::path& file, double exposure, const std::string& view) {
+  require_writable(file);
+  const size_t values = size_t(std::max(0, image.width)) * std::max(0, image.height) * image.channels.size();
+  if (values == 0 || image.pixels.size() != values)
+    bug("write_image: {} values for {} x {} pixels of {} channels", image.pixels.size(), image.width, image.height,
+        image.channels.size());
+  if (suffix_of(file) == ".png")
+    write_text_file(file, png_file(image, exposure, view));
+  else
+    write_exr(image, file);
+}
+
+void require_writable(const std::filesystem::path& file) {
+  const std::string suffix = suffix_of(file);
+  if (suffix != ".exr" && suffix != ".png")
+    user_error("{}: images are written as .exr or .png, not \"{}\"", file.string(), suffix);
+  require_writable_path(file);
+}
+
+}  // namespace wale

@@ -1,0 +1,32 @@
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "geom/base_mesh_generators.h"
+#include "geom/error.h"
+#include "host/world.h"
+
+namespace wale {
+
+BaseMesh load_mesh(const MeshSource& s, const Loaders& loaders) {
+  if (!s.file.empty()) return loaders.mesh(s.file);
+  if (s.generator == "swatch") return make_swatch(s.width, s.height, s.nu, s.nv);
+  if (s.generator == "tube") return make_tube(s.radius, s.height, s.nu, s.nv);
+  if (s.generator == "pillow") return make_pillow(s.width, s.height, s.thickness, s.nu, s.nv);
+  if (s.generator == "beanie") return make_beanie(s.radius, s.height, s.nu, s.nv);
+  if (s.generator == "draped_square") return make_draped_square(s.size, s.sphere_radius, s.nu);
+  bug("mesh generator \"{}\" passed the schema but has no maker", s.generator);
+}
+
+void transform_mesh(BaseMesh& mesh, const Transform& t) {
+  glm::dmat4 m(1.0);
+  m = glm::rotate(m, t.rotate.z, dvec3(0, 0, 1));
+  m = glm::rotate(m, t.rotate.y, dvec3(0, 1, 0));
+  m = glm::rotate(m, t.rotate.x, dvec3(1, 0, 0));
+  for (auto& p : mesh.position) p = dvec3(m * glm::dvec4(p * t.scale, 1.0)) + t.translate;
+  compute_normals(mesh);
+}
+
+Pattern load_pattern(const PatternSource& s) {
+  return s.file.empty() ? stockinette_pattern() : read_pattern(s.file, s.hints);
+}
+
+}  // namespace wale

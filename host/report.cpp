@@ -1,0 +1,120 @@
+#include "host/report.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace wale {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json fabric_json(const Fabric& f, const MeshReport& mesh) {
+  Json repeats = Json::array();
+  for (const auto& r : f.report.snapped_repeats) repeats.push_back({r.x, r.y});
+  return {
+      {"name", f.name},
+      {"mesh",
+       {{"vertices", mesh.vertices},
+        {"triangles", mesh.triangles},
+        {"polygons_split", mesh.polygons_split},
+        {"non_manifold_edges", mesh.non_manifold_edges},
+        {"boundary_edges", mesh.boundary_edges},
+        {"seam_edges", mesh.seam_edges},
+        {"degenerate_triangles", mesh.degenerate_triangles},
+        {"zero_area_uv", mesh.zero_area_uv},
+        {"flipped_uv", mesh.flipped_uv},
+        {"uv_overlap", mesh.overlap},
+        {"stretch_median", {mesh.stretch_median.x, mesh.stretch_median.y}}}},
+      {"charts", f.charts.size()},
+      {"full_yarns", f.report.full_yarns},
+      {"runs", f.report.runs},
+      {"plies", f.report.plies},
+      {"segments", f.report.segments},
+      {"vertices", f.report.vertices},
+      {"samples_outside", f.report.samples_outside},
+      {"samples_extrapolated", f.report.samples_extrapolated},
+      {"worst_partner_distance_m", f.report.worst_partner_distance},
+      {"snapped_repeats", repeats},
+      {"tile_m", {f.report.tile_metres.x, f.report.tile_metres.y}},
+      {"stitch_m", {f.report.stitch_metres.x, f.report.stitch_metres.y}},
+      {"yarn_radius_m", f.yarn_radius},
+      {"ply_radius_m", f.ply_radius},
+      {"mirrored", f.report.mirrored},
+      {"patches", f.patches.size()},
+      {"cells", f.cell_triangles.offset.empty() ? 0 : f.cell_triangles.offset.size() - 1},
+      {"vertex_bytes", f.report.vertices * W_VERTEX_WORDS * 4},
+  };
+}
+
+}  // namespace
+
+std::string build_report_json(const World& world) {
+  Json json{{"fabrics", Json::array()}, {"triangles", world.triangle_count()}, {"spheres", world.spheres.size()},
+            {"seconds", world.seconds}};
+  for (size_t i = 0; i < world.fabrics.size(); ++i)
+    json["fabrics"].push_back(fabric_json(world.fabrics[i], world.fabric_mesh_reports[i]));
+  return json.dump(2) + "\n";
+}
+
+std::string build_report_text(const World& world) {
+  std::string out;
+  for (size_t i = 0; i < world.fabrics.size(); ++i) {
+    const Fabric& f = world.fabrics[i];
+    const MeshReport& m = world.fabric_mesh_reports[i];
+    const auto& r = f.report;
+    out += fmt::format("fabric \"{}\"\n", f.name);
+    out += fmt::format("  base mesh  {} vertices, {} triangles, {} charts, {} seam edges, {} boundary edges\n", m.vertices,
+                       m.triangles, f.charts.size(), m.seam_edges, m.boundary_edges);
+    out += fmt::format("  UV         stretch {:.3g} x {:.3g} (median), {} flipped, {} without area, {:.1f} % covered twice\n",
+                       m.stretch_median.x, m.stretch_median.y, m.flipped_uv, m.zero_area_uv, 100 * m.overlap);
+    if (m.non_manifold_edges || m.degenerate_triangles)
+      out += fmt::format("  warning    {} non-manifold edges, {} triangles without area\n", m.non_manifold_edges,
+                         m.degenerate_triangles);
+    if (m.overlap > 0.01) out += "  warning    overlapping UVs: where two triangles share a UV, one of them stays bare\n";
+    out += fmt::format("  stitch     {:.3f} x {:.3f} mm ({:.2f} wales and {:.2f} courses per cm), tile {:.3f} x {:.3f} mm\n",
+                       1e3 * r.stitch_metres.x, 1e3 * r.stitch_metres.y, 0.01 / r.stitch_metres.x,
+                       0.01 / r.stitch_metres.y, 1e3 * r.tile_metres.x, 1e3 * r.tile_metres.y);
+    out += fmt::format("  yarn       {} plies, yarn radius {:.4f} mm, ply radius {:.4f} mm\n", f.plies, 1e3 * f.yarn_radius,
+                       1e3 * f.ply_radius);
+    out += fmt::format("  knitted    {} full yarns, {} runs, {} segments, {} vertices ({} bytes each)\n", r.full_yarns,
+                       r.runs, r.segments, r.vertices, W_VERTEX_WORDS * 4);
+    out += fmt::format("  cut        {} samples outside the cloth, {} in the half stitch past its borders\n",
+                       r.samples_outside, r.samples_extrapolated);
+    for (const auto& s : r.snapped_repeats) out += fmt::format("  joined     repeats snapped to {} x {} tiles\n", s.x, s.y);
+    out += fmt::format("  partners   worst distance {:.3g} mm\n", 1e3 * r.worst_partner_distance);
+    if (r.mirrored) out += "  mirrored   a UV chart is mirrored, and so is its cloth, twist included\n";
+  }
+  if (world.triangle_count() || !world.spheres.empty())
+    out += fmt::format("props        {} triangles, {} spheres\n", world.triangle_count(), world.spheres.size());
+  for (const auto& [step, seconds] : world.seconds) out += fmt::format("time         {}: {:.3f} s\n", step, seconds);
+  return out;
+}
+
+std::string plan_text(const World& world, const SceneDevice& scene, const IntegratorScene& integrator,
+                      const Features& features) {
+  std::string out = "simulated\n";
+  const auto reasons = explain(world, integrator, features);
+  for (const auto& r : reasons)
+    if (r.used) out += fmt::format("  {:<20} {}\n", r.feature, r.because);
+  out += "left out\n";
+  for (const auto& r : reasons)
+    if (!r.used) out += fmt::format("  {:<20} {}\n", r.feature, r.because);
+  out += fmt::format("kernel options\n  {}\nbuffers\n", features.options());
+  uint64_t total = 0;
+  for (const auto& [name, bytes] : scene.bytes()) {
+    out += fmt::format("  {:<20} {:>14} bytes\n", name, bytes);
+    total += bytes;
+  }
+  return out + fmt::format("  {:<20} {:>14} bytes\n", "all", total);
+}
+
+std::string plan_json(const World& world, const SceneDevice& scene, const IntegratorScene& integrator,
+                      const Features& features) {
+  Json json{{"features", Json::array()}, {"options", features.options()}, {"buffers", scene.bytes()}};
+  for (const auto& r : explain(world, integrator, features))
+    json["features"].push_back({{"feature", r.feature}, {"used", r.used}, {"because", r.because}});
+  return json.dump(2) + "\n";
+}
+
+}  // namespace wale

@@ -1,0 +1,116 @@
+#include "host/scene_device.h"
+
+#include "geom/error.h"
+#include "host/triangle_tree.h"
+
+namespace wale {
+namespace {
+
+// Triangles are renumbered so that every leaf of their tree holds a run.
+std::vector<float> in_order(const std::vector<float>& triangles, const std::vector<uint32_t>& order) {
+  constexpr size_t kWords = World::kTriangleWords;
+  std::vector<float> out;
+  out.reserve(triangles.size());
+  for (const uint32_t t : order)
+    out.insert(out.end(), triangles.begin() + std::ptrdiff_t(t * kWords), triangles.begin() + std::ptrdiff_t((t + 1) * kWords));
+  return out;
+}
+
+std::vector<float> corners_of(const std::vector<float>& triangles) {
+  constexpr size_t kWords = World::kTriangleWords;
+  std::vector<float> out;
+  out.reserve(triangles.size() / kWords * 9);
+  for (size_t i = 0; i < triangles.size(); i += kWords)
+    out.insert(out.end(), triangles.begin() + std::ptrdiff_t(i), triangles.begin() + std::ptrdiff_t(i + 9));
+  return out;
+}
+
+std::vector<FabricInput> inputs_of(const World& world) {
+  std::vector<FabricInput> inputs;
+  for (size_t i = 0; i < world.fabrics.size(); ++i)
+    inputs.push_back({&world.fabrics[i], world.fabric_material[i], world.ply_materials[world.fabric_material[i]].tau_e});
+  return inputs;
+}
+
+}  // namespace
+
+SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage stage)
+    : device_(device), stage_(stage), fabric_(upload_fabrics(device, inputs_of(world), world.origin, stage)) {
+  const TriangleTree tree = build_triangle_tree(corners_of(world.triangles));
+  ply_materials_ = Buffer<WPlyMaterial>(device, world.ply_materials);
+  triangles_ = Buffer<float>(device, in_order(world.triangles, tree.order));
+  if (!tree.order.empty()) {
+    tri_nodes_ = Buffer<uint32_t>(device, tree.tree.words);
+    tri_leaves_ = Buffer<float>(device, tree.leaves);
+    tri_root_ = 0;
+  } else {
+    tri_nodes_ = Buffer<uint32_t>(device, 0);
+    tri_leaves_ = Buffer<float>(device, 0);
+  }
+  spheres_ = Buffer<WSphere>(device, world.spheres);
+  sphere_count_ = uint32_t(world.spheres.size());
+  surface_materials_ = Buffer<WSurfaceMaterial>(device, world.surface_materials);
+  lights_ = Buffer<WLight>(device, world.lights.lights);
+  light_count_ = uint32_t(world.lights.lights.size());
+  light_cdf_ = Buffer<float>(device, world.lights.cdf);
+  light_triangles_ = Buffer<float>(device, world.lights.triangles);
+  light_triangle_index_ = Buffer<int32_t>(device, world.lights.triangle_index);
+  environment_ = world.environment;
+  env_texels_ = Buffer<w_float4>(device, world.environment_tables.texels);
+  env_cdf_ = Buffer<float>(device, world.environment_tables.cdf);
+  events_ = Buffer<uint32_t>(device, W_EVENT_COUNT);
+  events_.fill(device, 0u);
+}
+
+cl_uint SceneDevice::bind_scene(cl::Kernel& kernel, cl_uint first) const {
+  cl_uint i = first;
+  kernel.setArg(i++, fabric_.tree.nodes.cl());
+  kernel.setArg(i++, fabric_.tree.node_cell.cl());
+  kernel.setArg(i++, fabric_.tree.leaves.cl());
+  kernel.setArg(i++, fabric_.tree.root);
+  kernel.setArg(i++, tri_root_);
+  kernel.setArg(i++, tri_nodes_.cl());
+  kernel.setArg(i++, tri_leaves_.cl());
+  kernel.setArg(i++, spheres_.cl());
+  kernel.setArg(i++, sphere_count_);
+  kernel.setArg(i++, events_.cl());
+  if (stage_ != LocalStage::exact) {
+    kernel.setArg(i++, fabric_.base_positions.cl());
+    kernel.setArg(i++, fabric_.base_indices.cl());
+    kernel.setArg(i++, fabric_.base_uv.cl());
+    kernel.setArg(i++, fabric_.cell_triangle_offsets.cl());
+    kernel.setArg(i++, fabric_.cell_triangles.cl());
+    kernel.setArg(i++, fabric_.cell_segment_offsets.cl());
+    kernel.setArg(i++, fabric_.cell_segments.cl());
+    kernel.setArg(i++, fabric_.grids.cl());
+    kernel.setArg(i++, fabric_.grid_of_cell.cl());
+  }
+  return i;
+}
+
+cl_uint SceneDevice::bind_lights(cl::Kernel& kernel, cl_uint first) const {
+  cl_uint i = first;
+  kernel.setArg(i++, lights_.cl());
+  kernel.setArg(i++, light_cdf_.cl());
+  kernel.setArg(i++, light_triangles_.cl());
+  kernel.setArg(i++, light_triangle_index_.cl());
+  kernel.setArg(i++, environment_);
+  kernel.setArg(i++, env_texels_.cl());
+  kernel.setArg(i++, env_cdf_.cl());
+  kernel.setArg(i++, light_count_);
+  return i;
+}
+
+std::map<std::string, uint64_t> SceneDevice::bytes() const {
+  return {{"ply vertices", fabric_.vertices.bytes()},
+          {"ply leaves", fabric_.tree.leaves.bytes()},
+          {"ply tree", fabric_.tree.nodes.bytes() + fabric_.tree.node_cell.bytes()},
+          {"triangles", triangles_.bytes() + tri_leaves_.bytes() + tri_nodes_.bytes()},
+          {"environment", env_texels_.bytes() + env_cdf_.bytes()},
+          {"lights", lights_.bytes() + light_cdf_.bytes() + light_triangles_.bytes()},
+          {"materials", ply_materials_.bytes() + surface_materials_.bytes()},
+          {"UV cells", stage_ == LocalStage::exact ? 0
+                           : fabric_.cell_triangles.bytes() + fabric_.cell_segments.bytes() + fabric_.base_uv.bytes()}};
+}
+
+}  // namespace wale

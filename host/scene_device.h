@@ -1,0 +1,54 @@
+#pragma once
+#include <memory>
+
+#include "host/device.h"
+#include "host/fabric_device.h"
+#include "host/world.h"
+
+namespace wale {
+
+/// A world on the device: buffers and the order in which kernels take them (stages/scene_args.clh, light_args.clh).
+class SceneDevice {
+ public:
+  SceneDevice(const Device& device, const World& world, LocalStage stage = LocalStage::exact);
+
+  /// Set the arguments of W_SCENE_PARAMS / W_LIGHT_PARAMS from `first` on; return the next free index. Kernels must be
+  /// built for the same local stage.
+  cl_uint bind_scene(cl::Kernel& kernel, cl_uint first) const;
+  cl_uint bind_lights(cl::Kernel& kernel, cl_uint first) const;
+
+  const cl::Buffer& vertices() const { return fabric_.vertices.cl(); }
+  const cl::Buffer& ply_materials() const { return ply_materials_.cl(); }
+  const cl::Buffer& triangles() const { return triangles_.cl(); }
+  const cl::Buffer& spheres() const { return spheres_.cl(); }
+  const cl::Buffer& surface_materials() const { return surface_materials_.cl(); }
+  const cl::Buffer& events() const { return events_.cl(); }
+  std::vector<uint32_t> read_events() const { return events_.read(device_); }
+
+  const FabricDevice& fabric() const { return fabric_; }
+  /// Bytes by buffer name, for `wale plan` and --stats.
+  std::map<std::string, uint64_t> bytes() const;
+
+ private:
+  const Device& device_;
+  LocalStage stage_;
+  FabricDevice fabric_;
+  Buffer<WPlyMaterial> ply_materials_;
+  Buffer<float> triangles_;
+  Buffer<uint32_t> tri_nodes_;
+  Buffer<float> tri_leaves_;
+  uint32_t tri_root_ = W_NONE;
+  Buffer<WSphere> spheres_;
+  uint32_t sphere_count_ = 0;
+  Buffer<WSurfaceMaterial> surface_materials_;
+  Buffer<WLight> lights_;
+  uint32_t light_count_ = 0;
+  Buffer<float> light_cdf_, light_triangles_;
+  Buffer<int32_t> light_triangle_index_;
+  WEnvironment environment_{};
+  Buffer<w_float4> env_texels_;
+  Buffer<float> env_cdf_;
+  Buffer<uint32_t> events_;
+};
+
+}  // namespace wale

@@ -1,0 +1,14 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "host/json_document.h"
+
+namespace wale {
+
+/// Applies "key.path=value" options (--set) to a document, before it is checked. Elements of lists are named by index
+/// or by their "name"; objects on the way are made when absent (the check refuses unknown ones). What is set carries
+/// the option as its place. Throws user errors that name the option and the nearest key.
+void apply_overrides(JsonNode& document, const std::vector<std::string>& overrides);
+
+}  // namespace wale

@@ -1,0 +1,295 @@
+// A checked document becomes a Scene; what a table of types cannot say is checked here.
+#include <set>
+
+#include "geom/error.h"
+#include "host/scene.h"
+#include "host/scene_nodes.h"
+#include "host/scene_overrides.h"
+#include "host/scene_schema.h"
+#include "host/suggest.h"
+
+namespace wale {
+namespace {
+
+constexpr double kMaxPixels = double(1 << 28);
+
+// A view needs two different points and an up that is not along their line.
+void check_view(const JsonNode& node, const std::string& path) {
+  const dvec3 line = vector_of(node["look_at"]) - vector_of(node["position"]);
+  if (glm::length(line) < 1e-12) {
+    const JsonNode& at = node["position"];
+    fail(at, path + ".position", "the same point as look_at ({:g}, {:g}, {:g} m)", vector_of(at).x, vector_of(at).y,
+         vector_of(at).z);
+  }
+  const JsonNode& up_node = node["up"];
+  const dvec3 up = glm::normalize(nonzero_direction(up_node, path + ".up"));
+  if (glm::length(glm::cross(glm::normalize(line), up)) < 1e-6)
+    fail(up_node, path + ".up", "parallel to the line from position to look_at; choose another direction");
+}
+
+Transform transform_of(const JsonNode& node) {
+  return {number_of(node, "scale"), vector_of(node["rotate"]), vector_of(node["translate"])};
+}
+
+MeshSource mesh_of(const JsonNode& node) {
+  MeshSource mesh;
+  if (node.kind == JsonNode::Kind::string) {
+    mesh.file = node.text;
+  } else if (node.has("file")) {
+    mesh.file = node["file"].text;
+  } else {
+    mesh.generator = node["generator"].text;
+    const std::pair<const char*, double*> sizes[] = {{"width", &mesh.width},   {"height", &mesh.height},
+                                                     {"radius", &mesh.radius}, {"thickness", &mesh.thickness},
+                                                     {"size", &mesh.size},     {"sphere_radius", &mesh.sphere_radius}};
+    for (const auto& [key, value] : sizes)
+      if (node.has(key)) *value = number_of(node, key);
+    mesh.nu = integer_of(node, "nu");
+    mesh.nv = node.has("nv") ? integer_of(node, "nv") : mesh.nu;
+  }
+  return mesh;
+}
+
+PatternSource pattern_of(const JsonNode& node) {
+  PatternSource pattern;
+  if (node.kind == JsonNode::Kind::string) {
+    pattern.file = node.text;
+  } else if (node.has("builtin")) {
+    pattern.builtin = node["builtin"].text;
+  } else {
+    pattern.file = node["file"].text;
+    if (node.has("period")) pattern.hints.period = pair_of(node["period"]);
+    if (node.has("yarn_radius")) pattern.hints.yarn_radius = number_of(node, "yarn_radius");
+    if (node.has("stitches")) pattern.hints.stitches = ivec2(pair_of(node["stitches"]));
+    if (node.has("unit")) pattern.hints.unit = number_of(node, "unit");
+  }
+  return pattern;
+}
+
+CameraScene camera_of(const JsonNode& node) {
+  check_view(node, "camera");
+  CameraScene camera;
+  camera.orthographic = node["type"].text == "orthographic";
+  camera.position = vector_of(node["position"]);
+  camera.look_at = vector_of(node["look_at"]);
+  camera.up = vector_of(node["up"]);
+  if (camera.orthographic) {
+    camera.height = number_of(node, "height");
+  } else {
+    camera.fov = number_of(node, "fov");
+    camera.aperture = number_of(node, "aperture");
+    camera.focus = number_of(node, "focus");
+  }
+  return camera;
+}
+
+FilmScene film_of(const JsonNode& node) {
+  const dvec2 size = pair_of(node["size"]);
+  if (size.x * size.y > kMaxPixels)
+    fail(node["size"], "film.size", "{:g} x {:g} are more pixels than {:g}", size.x, size.y, kMaxPixels);
+  return {int(size.x), int(size.y), number_of(node, "exposure"), node["view"].text, node["filter"].text};
+}
+
+IntegratorScene integrator_of(const JsonNode& node) {
+  IntegratorScene out;
+  out.spp = integer_of(node, "spp");
+  out.max_depth = integer_of(node, "max_depth");
+  out.russian_roulette_depth = integer_of(node, "russian_roulette_depth");
+  out.light_sampling = node["light_sampling"].text;
+  out.local_stage = node["local_stage"].text;
+  out.lanes = integer_of(node, "lanes");
+  out.pool = static_cast<unsigned>(number_of(node, "pool"));
+  out.seed = static_cast<unsigned>(number_of(node, "seed"));
+  return out;
+}
+
+MaterialSpec material_of(const std::string& name, const JsonNode& node) {
+  MaterialSpec material;
+  material.name = name;
+  material.ply = node["type"].text == "ply";
+  if (material.ply) {
+    if (node.has("reflect") != node.has("transmit")) {
+      const bool reflect = node.has("reflect");
+      fail(node[reflect ? "reflect" : "transmit"], "materials." + name + (reflect ? ".reflect" : ".transmit"),
+           "\"reflect\" and \"transmit\" are given both or not at all; \"{}\" is missing",
+           reflect ? "transmit" : "reflect");
+    }
+    if (node.has("color") && node.has("reflect"))
+      fail(node["color"], "materials." + name + ".color", "cannot be given together with \"reflect\" and \"transmit\"");
+    material.yarn = {node["preset"].text,
+                     maybe_color(node, "color"),
+                     maybe_color(node, "transmit"),
+                     maybe_color(node, "reflect"),
+                     maybe_number(node, "roughness"),
+                     maybe_number(node, "ior"),
+                     maybe_number(node, "optical_radius"),
+                     maybe_number(node, "fibre_twist")};
+  } else {
+    material.surface.coated = node["type"].text == "coated";
+    material.surface.color = color_of(node["color"]);
+    if (material.surface.coated) {
+      material.surface.roughness = number_of(node, "roughness");
+      material.surface.ior = number_of(node, "ior");
+    }
+  }
+  return material;
+}
+
+// Finds a material of the wanted sort; without a name, the default of that sort is made once.
+int find_material(Scene& scene, const JsonNode& user, const std::string& path, bool ply) {
+  const JsonNode* name = user.find("material");
+  const std::string wanted = name ? name->text : ply ? "(wool)" : "(grey)";
+  std::vector<std::string> fitting;
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    const MaterialSpec& material = scene.materials[i];
+    if (material.name == wanted && material.ply == ply) return int(i);
+    if (material.name == wanted)
+      fail(*name, path + ".material", "\"{}\" is a {} material; {} is needed here", wanted,
+           material.ply              ? "ply"
+           : material.surface.coated ? "coated"
+                                     : "diffuse",
+           ply ? "one of type \"ply\"" : "one of type \"diffuse\" or \"coated\"");
+    if (material.ply == ply) fitting.push_back(material.name);
+  }
+  if (name) fail(*name, path + ".material", "no material is named \"{}\"; {}", wanted, nearest_choice(wanted, fitting));
+  MaterialSpec made;
+  made.name = wanted;
+  made.ply = ply;
+  scene.materials.push_back(made);
+  return int(scene.materials.size()) - 1;
+}
+
+FabricScale scale_of(const JsonNode& node) {
+  constexpr double kPerMetre = 10;  // gauge is per 10 cm
+  FabricScale scale;
+  if (node.has("repeats")) {
+    scale.repeats = pair_of(node["repeats"]);
+  } else if (node.has("gauge")) {
+    const JsonNode& gauge = node["gauge"];
+    scale.kind = FabricScale::Kind::gauge;
+    scale.gauge = {kPerMetre * number_of(gauge, "wales"),
+                   gauge.has("courses") ? kPerMetre * number_of(gauge, "courses") : 0.0};
+  } else {
+    scale.kind = FabricScale::Kind::uv_metres;
+  }
+  return scale;
+}
+
+FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index) {
+  const std::string path = fmt::format("fabrics.{}", index);
+  const JsonNode& yarn = node["yarn"];
+  FabricScene fabric;
+  fabric.spec.name = text_or(node, "name", fmt::format("fabric{}", index));
+  fabric.spec.scale = scale_of(node);
+  fabric.spec.plies = integer_of(yarn, "plies");
+  fabric.spec.twist_pitch = number_of(yarn, "twist_pitch");
+  fabric.spec.thickness = number_of(yarn, "thickness");
+  fabric.spec.ply_radius = number_of(yarn, "ply_radius");
+  fabric.spec.height_offset = number_of(node, "height_offset");
+  fabric.spec.tolerance = number_of(node, "tolerance");
+  fabric.mesh = mesh_of(node["mesh"]);
+  fabric.transform = transform_of(node["transform"]);
+  fabric.pattern = pattern_of(node["pattern"]);
+  fabric.material = find_material(scene, node, path, true);
+  return fabric;
+}
+
+ObjectScene object_of(Scene& scene, const JsonNode& node, size_t index) {
+  const std::string path = fmt::format("objects.{}", index);
+  ObjectScene object;
+  object.name = text_or(node, "name", fmt::format("object{}", index));
+  const std::string& type = node["type"].text;
+  if (type == "mesh") {
+    object.mesh = mesh_of(node["mesh"]);
+    object.transform = transform_of(node["transform"]);
+  } else if (type == "sphere") {
+    object.kind = ObjectScene::Kind::sphere;
+    object.center = vector_of(node["center"]);
+    object.radius = number_of(node, "radius");
+  } else {
+    object.kind = ObjectScene::Kind::ground;
+    object.height = number_of(node, "height");
+    object.extent = number_of(node, "extent");
+    object.up = nonzero_direction(node["up"], path + ".up");
+  }
+  object.material = find_material(scene, node, path, false);
+  return object;
+}
+
+LightScene light_of(const JsonNode& node, size_t index) {
+  const std::string path = fmt::format("lights.{}", index);
+  const std::string& type = node["type"].text;
+  LightScene light;
+  if (node.has("radiance")) light.radiance = color_of(node["radiance"]);
+  for (double& channel : light.radiance) channel *= number_of(node, "intensity");
+  if (type == "quad") {
+    check_view(node, path);
+    light.position = vector_of(node["position"]);
+    light.look_at = vector_of(node["look_at"]);
+    light.up = vector_of(node["up"]);
+    light.width = number_of(node, "width");
+    light.height = number_of(node, "height");
+    light.two_sided = node["two_sided"].boolean;
+  } else if (type == "sphere") {
+    light.kind = LightScene::Kind::sphere;
+    light.position = vector_of(node["position"]);
+    light.radius = number_of(node, "radius");
+  } else if (type == "mesh") {
+    light.kind = LightScene::Kind::mesh;
+    light.mesh = mesh_of(node["mesh"]);
+    light.transform = transform_of(node["transform"]);
+  } else {
+    light.kind = LightScene::Kind::environment;
+    if (node.has("file")) light.file = node["file"].text;
+    light.rotation = number_of(node, "rotation");
+    light.env_up = nonzero_direction(node["up"], path + ".up");
+  }
+  return light;
+}
+
+void check_names(const JsonNode& list, const std::string& path) {
+  std::set<std::string> seen;
+  for (size_t i = 0; i < list.items.size(); ++i)
+    if (const JsonNode* name = list.items[i].find("name"))
+      if (!seen.insert(name->text).second)
+        fail(*name, fmt::format("{}.{}.name", path, i), "\"{}\" is the name of another element too", name->text);
+}
+
+}  // namespace
+
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  JsonNode root = read_json(file);
+  apply_overrides(root, overrides);
+  SchemaContext context{1, std::filesystem::absolute(file).parent_path()};
+  // Lengths are converted while the document is checked, so the units are looked up first; a wrong word is found there.
+  const JsonNode* units = root.find("units");
+  if (units && units->text == "mm") context.metres_per_unit = 1e-3;
+  check_schema(scene_type(), root, context);
+
+  Scene scene;
+  scene.file = file.string();
+  scene.camera_given = root.has("camera");
+  if (scene.camera_given) scene.camera = camera_of(root["camera"]);
+  scene.film = film_of(root["film"]);
+  scene.integrator = integrator_of(root["integrator"]);
+  for (const auto& member : root["materials"].members) scene.materials.push_back(material_of(member.key, member.value));
+  for (const char* key : {"fabrics", "objects", "lights"}) check_names(root[key], key);
+  for (size_t i = 0; i < root["fabrics"].items.size(); ++i)
+    scene.fabrics.push_back(fabric_of(scene, root["fabrics"].items[i], i));
+  for (size_t i = 0; i < root["objects"].items.size(); ++i)
+    scene.objects.push_back(object_of(scene, root["objects"].items[i], i));
+  int environments = 0;
+  for (size_t i = 0; i < root["lights"].items.size(); ++i) {
+    const JsonNode& node = root["lights"].items[i];
+    scene.lights.push_back(light_of(node, i));
+    if (scene.lights.back().kind == LightScene::Kind::environment && ++environments > 1)
+      fail(node, fmt::format("lights.{}", i), "a second environment light; a scene has at most one");
+  }
+  if (scene.lights.empty()) {
+    scene.lights.emplace_back();
+    scene.lights.back().kind = LightScene::Kind::environment;
+  }
+  return scene;
+}
+
+}  // namespace wale

@@ -1,0 +1,47 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace wale {
+
+/// What a run did and what it cost; `--stats FILE` writes it as JSON.
+struct Stats {
+  struct Program {
+    std::string name;
+    double build_seconds = 0;
+    bool cached = false;
+  };
+  struct Rays {
+    uint64_t count = 0;
+    double seconds = 0;  ///< of the launches that traced them
+  };
+  struct Geometry {
+    uint64_t count = 0, bytes = 0;
+  };
+
+  std::string scene, device, driver, platform;
+  std::vector<std::string> features;
+  std::vector<Program> programs;
+  std::map<std::string, Geometry> geometry;     ///< "segments", "triangles", ...
+  std::map<std::string, double> stage_seconds;  ///< "knit", "build tree", "intersect", ...
+  std::map<std::string, Rays> rays;             ///< "primary", "shadow", "bounce"
+  std::map<std::string, uint64_t> rare_events;  ///< "depth limit", ...
+  int width = 0, height = 0;
+  uint64_t samples = 0;  ///< paths
+  double samples_per_pixel = 0;
+  double total_seconds = 0;
+
+  /// Indented JSON. A rate whose time was not measured is null; numbers that are not finite too.
+  std::string json() const;
+};
+
+/// Largest resident size of this process so far, bytes.
+uint64_t peak_memory_bytes();
+
+/// Writes stats.json() atomically; throws a user error when the file cannot be written.
+void write_stats(const Stats& stats, const std::filesystem::path& file);
+
+}  // namespace wale

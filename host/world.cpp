@@ -1,0 +1,315 @@
+#include "host/world.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+
+#include "geom/error.h"
+#include "host/materials.h"
+
+namespace wale {
+namespace {
+
+struct Bounds {
+  dvec3 lo{1e300, 1e300, 1e300}, hi{-1e300, -1e300, -1e300};
+  void add(const dvec3& p) { lo = glm::min(lo, p), hi = glm::max(hi, p); }
+  bool empty() const { return lo.x > hi.x; }
+  dvec3 centre() const { return 0.5 * (lo + hi); }
+  double radius() const { return empty() ? 1.0 : std::max(1e-9, 0.5 * glm::length(hi - lo)); }
+};
+
+w_float4 vec4(const dvec3& v, double w = 0) { return {float(v.x), float(v.y), float(v.z), float(w)}; }
+w_float4 rgb4(const Rgb& c, double w = 0) { return {float(c[0]), float(c[1]), float(c[2]), float(w)}; }
+std::array<float, 3> rgb3(const Rgb& c) { return {float(c[0]), float(c[1]), float(c[2])}; }
+
+/// Orthonormal right, up and forward of a viewer; `up` need not be perpendicular.
+struct Frame {
+  dvec3 right, up, forward;
+  Frame(const dvec3& from, const dvec3& to, const dvec3& up_hint)
+      : right(0), up(0), forward(glm::normalize(to - from)) {
+    right = glm::normalize(glm::cross(forward, up_hint));
+    up = glm::cross(right, forward);
+  }
+};
+
+class Builder {
+ public:
+  Builder(const Scene& scene, const Loaders& loaders, const BuildProgress& progress)
+      : scene_(scene), loaders_(loaders), progress_(progress) {}
+
+  World build() {
+    step("knit", [&] { knit_all(); });
+    step("props", [&] {
+      add_objects();
+      choose_origin();
+      add_lights();
+    });
+    world_.camera = camera();
+    return std::move(world_);
+  }
+
+ private:
+  template <typename F>
+  void step(const std::string& name, const F& work) {
+    const auto start = std::chrono::steady_clock::now();
+    if (progress_) progress_(name, 0);
+    work();
+    if (progress_) progress_(name, 1);
+    world_.seconds[name] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  void knit_all() {
+    for (const auto& fabric : scene_.fabrics) {
+      BaseMesh mesh = load_mesh(fabric.mesh, loaders_);
+      require_uv(mesh);
+      transform_mesh(mesh, fabric.transform);
+      const Pattern pattern = load_pattern(fabric.pattern);
+      refuse_if_too_large(mesh, pattern, fabric.spec);
+      world_.fabric_mesh_reports.push_back(validate(mesh));
+      for (const auto& p : mesh.position) bounds_.add(p), fabric_bounds_.add(p);
+      world_.fabrics.push_back(knit_fabric(std::move(mesh), pattern, fabric.spec));
+      world_.fabric_material.push_back(uint32_t(world_.ply_materials.size()));
+      world_.ply_materials.push_back(ply_material(scene_.materials.at(size_t(fabric.material)).yarn));
+      if (progress_) progress_("knit", double(world_.fabrics.size()) / double(scene_.fabrics.size()));
+    }
+  }
+
+  // A segment takes 28 bytes as stored vertex and about 25 in leaves and nodes on the device, and as much again for
+  // its anchor; the host holds it once more while it knits.
+  static void refuse_if_too_large(const BaseMesh& mesh, const Pattern& pattern, const FabricSpec& spec) {
+    constexpr double kBytes = 28 + 25 + 32 + 160;
+    const double segments = double(estimate_segments(mesh, pattern, spec));
+    const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+    if (segments * kBytes > 0.8 * memory)
+      user_error("fabric \"{}\": about {:.3g} ply segments would need {:.3g} GB, this machine has {:.3g} GB; use fewer "
+                 "repeats, a coarser gauge or a larger tolerance",
+                 spec.name, segments, segments * kBytes * 1e-9, memory * 1e-9);
+  }
+
+  int add_material(const SurfaceAppearance& look) {
+    WSurfaceMaterial m = surface_material(look);
+    m.emission = {0, 0, 0, 0};
+    m.light = -1;
+    world_.surface_materials.push_back(m);
+    return int(world_.surface_materials.size()) - 1;
+  }
+
+  int add_emitter(const Rgb& radiance, bool one_sided) {
+    SurfaceAppearance black;
+    black.color = {0, 0, 0};
+    const int index = add_material(black);
+    world_.surface_materials[size_t(index)].emission = rgb4(radiance, one_sided ? 1 : 0);
+    return index;
+  }
+
+  // Triangles are kept in double until the origin is known.
+  struct Triangle {
+    std::array<dvec3, 3> corner, normal;
+    int material;
+  };
+
+  void add_triangles(const BaseMesh& mesh, int material) {
+    for (const auto& t : mesh.triangle) {
+      Triangle triangle;
+      for (size_t k = 0; k < 3; ++k) {
+        triangle.corner[k] = mesh.position[t[k]];
+        triangle.normal[k] = mesh.normal[t[k]];
+      }
+      triangle.material = material;
+      triangles_.push_back(triangle);
+    }
+  }
+
+  void add_quad(const dvec3& centre, const dvec3& half_u, const dvec3& half_v, int material) {
+    const dvec3 n = glm::normalize(glm::cross(half_u, half_v));
+    const std::array<dvec3, 4> c = {centre - half_u - half_v, centre + half_u - half_v, centre + half_u + half_v,
+                                    centre - half_u + half_v};
+    triangles_.push_back({{c[0], c[1], c[2]}, {n, n, n}, material});
+    triangles_.push_back({{c[0], c[2], c[3]}, {n, n, n}, material});
+  }
+
+  void add_objects() {
+    for (const auto& object : scene_.objects) {
+      const int material = add_material(scene_.materials.at(size_t(object.material)).surface);
+      if (object.kind == ObjectScene::Kind::sphere) {
+        spheres_.push_back({object.center, object.radius, material, -1});
+        bounds_.add(object.center - object.radius);
+        bounds_.add(object.center + object.radius);
+      } else if (object.kind == ObjectScene::Kind::ground) {
+        const dvec3 up = glm::normalize(object.up);
+        const dvec3 side = std::abs(up.x) < 0.9 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+        const dvec3 u = glm::normalize(glm::cross(side, up)), v = glm::cross(up, u);
+        // Under the fabric, not under the world's zero: a ground that is far away wastes the floats' digits.
+        dvec3 centre = bounds_.empty() ? dvec3(0) : bounds_.centre();
+        centre += up * (object.height - glm::dot(centre, up));
+        add_quad(centre, u * object.extent, v * object.extent, material);
+      } else {
+        BaseMesh mesh = load_mesh(object.mesh, loaders_);
+        transform_mesh(mesh, object.transform);
+        for (const auto& p : mesh.position) bounds_.add(p);
+        add_triangles(mesh, material);
+      }
+    }
+  }
+
+  void choose_origin() {
+    world_.origin = !fabric_bounds_.empty() ? fabric_bounds_.centre()
+                    : !bounds_.empty()      ? bounds_.centre()
+                                            : scene_.camera.look_at;
+  }
+
+  void upload_triangle(const Triangle& t) {
+    for (const auto& c : t.corner)
+      for (int a = 0; a < 3; ++a) world_.triangles.push_back(float(c[a] - world_.origin[a]));
+    for (const auto& n : t.normal)
+      for (int a = 0; a < 3; ++a) world_.triangles.push_back(float(n[a]));
+    world_.triangles.push_back(std::bit_cast<float>(uint32_t(t.material)));
+    world_.triangles.push_back(0.0f);
+  }
+
+  void add_lights() {
+    LightTableBuilder tables;
+    for (const auto& light : scene_.lights) {
+      const bool black = light.file.empty() && light.radiance == Rgb{0, 0, 0};
+      if (black) continue;  // gives nothing: not simulated
+      switch (light.kind) {
+        case LightScene::Kind::sphere: add_sphere_light(light, tables); break;
+        case LightScene::Kind::environment: add_environment(light, tables); break;
+        case LightScene::Kind::quad: add_quad_light(light, tables); break;
+        case LightScene::Kind::mesh: add_mesh_light(light, tables); break;
+      }
+    }
+    for (const auto& t : triangles_) upload_triangle(t);
+    for (const auto& s : spheres_)
+      world_.spheres.push_back({vec4(s.centre - world_.origin, s.radius), s.material, s.light, 0, 0});
+    world_.lights = tables.finish();
+  }
+
+  void add_sphere_light(const LightScene& light, LightTableBuilder& tables) {
+    const int material = add_emitter(light.radiance, false);
+    const dvec3 c = light.position - world_.origin;
+    const int index =
+        tables.add_sphere(rgb3(light.radiance), {float(c.x), float(c.y), float(c.z)}, float(light.radius));
+    world_.surface_materials[size_t(material)].light = index;
+    spheres_.push_back({light.position, light.radius, material, index});
+    world_.light_names.push_back("sphere");
+  }
+
+  // Registers triangles [first, end) as one light.
+  void register_triangles(size_t first, const Rgb& radiance, bool one_sided, int material, LightTableBuilder& tables,
+                          const std::string& name) {
+    std::vector<LightTriangle> corners;
+    std::vector<int32_t> numbers;
+    for (size_t i = first; i < triangles_.size(); ++i) {
+      LightTriangle t;
+      for (size_t k = 0; k < 3; ++k)
+        for (int a = 0; a < 3; ++a) t[3 * k + size_t(a)] = float(triangles_[i].corner[k][a] - world_.origin[a]);
+      corners.push_back(t);
+      numbers.push_back(int32_t(i));
+    }
+    world_.surface_materials[size_t(material)].light = tables.add_mesh(rgb3(radiance), corners, numbers, one_sided);
+    world_.light_names.push_back(name);
+  }
+
+  void add_quad_light(const LightScene& light, LightTableBuilder& tables) {
+    const Frame frame(light.position, light.look_at, light.up);
+    const int material = add_emitter(light.radiance, !light.two_sided);
+    const size_t first = triangles_.size();
+    // right x up points against forward: the order below makes the front face look_at.
+    add_quad(light.position, frame.up * (0.5 * light.height), frame.right * (0.5 * light.width), material);
+    register_triangles(first, light.radiance, !light.two_sided, material, tables, "quad");
+  }
+
+  void add_mesh_light(const LightScene& light, LightTableBuilder& tables) {
+    BaseMesh mesh = load_mesh(light.mesh, loaders_);
+    transform_mesh(mesh, light.transform);
+    const int material = add_emitter(light.radiance, false);
+    const size_t first = triangles_.size();
+    add_triangles(mesh, material);
+    register_triangles(first, light.radiance, false, material, tables, "mesh");
+  }
+
+  void add_environment(const LightScene& light, LightTableBuilder& tables) {
+    WEnvironment& env = world_.environment;
+    Rgb mean = light.radiance;
+    env.radiance = rgb4(light.radiance, 1);
+    const dvec3 up = glm::normalize(light.env_up);
+    // Local y is up; at rotation 0 local -z is world -z (or, for up = z, world +y), turned about up by the rotation.
+    const dvec3 back = std::abs(up.z) > 0.9 ? dvec3(0, -1, 0) : dvec3(0, 0, 1);
+    const dvec3 x0 = glm::normalize(glm::cross(up, back)), z0 = glm::cross(x0, up);
+    const double c = std::cos(light.rotation), s = std::sin(light.rotation);
+    env.to_local[0] = vec4(c * x0 - s * z0);
+    env.to_local[1] = vec4(up);
+    env.to_local[2] = vec4(s * x0 + c * z0);
+    if (!light.file.empty()) {
+      const Image image = loaders_.image(light.file);
+      std::vector<float> rgb(size_t(image.width) * image.height * 3);
+      const size_t n = image.channels.size();
+      for (size_t i = 0; i < rgb.size() / 3; ++i)
+        for (size_t k = 0; k < 3; ++k) rgb[3 * i + k] = image.pixels[i * n + (n >= 3 ? k : 0)] * float(light.radiance[k]);
+      world_.environment_tables = environment_tables(rgb, image.width, image.height);
+      env.width = image.width;
+      env.height = image.height;
+      env.average = world_.environment_tables.average;
+      const double a = env.average;
+      mean = {a, a, a};
+    }
+    env.light = tables.add_environment(rgb3(mean), float(bounds_.radius()));
+    world_.light_names.push_back("environment");
+  }
+
+  // Without a camera in the scene: a portrait lens that sees all fabrics from the front, a little from above.
+  CameraScene framed() const {
+    CameraScene c = scene_.camera;
+    const Bounds& b = fabric_bounds_.empty() ? bounds_ : fabric_bounds_;
+    const dvec3 centre = b.empty() ? dvec3(0) : b.centre();
+    c.look_at = centre;
+    c.position = centre + glm::normalize(dvec3(0.25, 0.35, 1)) * (1.05 * b.radius() / std::sin(0.5 * c.fov));
+    c.up = dvec3(0, 1, 0);
+    return c;
+  }
+
+  WCamera camera() const {
+    const CameraScene c = scene_.camera_given ? scene_.camera : framed();
+    const Frame frame(c.position, c.look_at, c.up);
+    WCamera out{};
+    out.origin = vec4(c.position - world_.origin);
+    out.right = vec4(frame.right);
+    out.up = vec4(frame.up);
+    out.forward = vec4(frame.forward);
+    out.width = scene_.film.width;
+    out.height = scene_.film.height;
+    out.kind = c.orthographic ? 1 : 0;
+    out.half_height = float(c.orthographic ? 0.5 * c.height : std::tan(0.5 * c.fov));
+    out.half_width = out.half_height * float(out.width) / float(out.height);
+    out.aperture = float(c.aperture);
+    out.focus = float(c.focus > 0 ? c.focus : glm::length(c.look_at - c.position));
+    out.filter = scene_.film.filter == "box" ? 0 : 1;
+    return out;
+  }
+
+  struct Sphere {
+    dvec3 centre;
+    double radius;
+    int material, light;
+  };
+
+  const Scene& scene_;
+  const Loaders& loaders_;
+  const BuildProgress& progress_;
+  World world_;
+  Bounds bounds_, fabric_bounds_;
+  std::vector<Triangle> triangles_;
+  std::vector<Sphere> spheres_;
+};
+
+}  // namespace
+
+World build_world(const Scene& scene, const Loaders& loaders, const BuildProgress& progress) {
+  return Builder(scene, loaders, progress).build();
+}
+
+}  // namespace wale

@@ -1,0 +1,294 @@
+// Image files, the view transform, atomic writing.
+#include "host/image.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+
+#include "host/atomic_file.h"
+#include "host/export_curves.h"
+#include "host/schema.h"
+#include "temporary_folder.h"
+
+namespace wale {
+namespace {
+
+Image ramp(int width, int height, const std::vector<std::string>& channels) {
+  Image image{width, height, channels, std::vector<float>(size_t(width) * height * channels.size())};
+  for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = float(i) * 0.37f - 1.0f;
+  return image;
+}
+
+// Stands for a full disk: no file may grow past `bytes` while this lives.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    std::fflush(nullptr);
+    handler_ = std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limited{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limited);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
+};
+
+TEST(Image, ExrKeepsEveryChannelToTheBit) {
+  TemporaryFolder folder;
+  const Image image = ramp(7, 5, {"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "variance.R", "depth.Z"});
+  write_image(image, folder / "a.exr");
+  const Image back = read_image(folder / "a.exr");
+  ASSERT_EQ(back.width, 7);
+  ASSERT_EQ(back.height, 5);
+  ASSERT_EQ(back.channels.size(), image.channels.size());
+  for (size_t c = 0; c < image.channels.size(); ++c) {
+    // The format sorts channels by name.
+    const auto found = std::find(back.channels.begin(), back.channels.end(), image.channels[c]);
+    ASSERT_NE(found, back.channels.end()) << image.channels[c];
+    const size_t at = found - back.channels.begin();
+    for (int y = 0; y < 5; ++y)
+      for (int x = 0; x < 7; ++x) ASSERT_EQ(back.at(x, y)[at], image.at(x, y)[c]) << image.channels[c];
+  }
+}
+
+TEST(Image, SameImageSameBytes) {
+  TemporaryFolder folder;
+  for (const char* suffix : {".exr", ".png"}) {
+    const Image image = ramp(16, 9, {"R", "G", "B"});
+    write_image(image, folder / (std::string("a") + suffix));
+    write_image(image, folder / (std::string("b") + suffix));
+    const std::string a = file_text(folder / (std::string("a") + suffix));
+    EXPECT_GT(a.size(), 50u);
+    EXPECT_EQ(a, file_text(folder / (std::string("b") + suffix)));
+  }
+}
+
+TEST(Image, PngIsWithinOneStepOfTheViewTransform) {
+  TemporaryFolder folder;
+  Image image{64, 64, {"R", "G", "B"}, std::vector<float>(64 * 64 * 3)};
+  for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = float(i) / float(image.pixels.size());
+  write_image(image, folder / "a.png", 0.5, "srgb");
+  const Image back = read_image(folder / "a.png");
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) {
+      float display[3];
+      view_transform(image.at(x, y), 0.5, "srgb", display);
+      for (int c = 0; c < 3; ++c)
+        ASSERT_NEAR(linear_to_srgb(back.at(x, y)[c]), display[c], 1.001 / 255) << x << ' ' << y << ' ' << c;
+    }
+}
+
+TEST(Image, DitherKeepsTheMeanOfAFlatShade) {
+  TemporaryFolder folder;
+  const double wanted = 100.3 / 255;  // between two 8-bit values
+  Image image{128, 128, {"R", "G", "B"}, std::vector<float>(128 * 128 * 3, float(srgb_to_linear(wanted)))};
+  write_image(image, folder / "a.png", 0, "srgb");
+  const Image back = read_image(folder / "a.png");
+  double sum = 0;
+  for (float v : back.pixels) sum += std::round(255 * linear_to_srgb(v));
+  // 49152 independent Bernoulli(0.3): standard deviation of the mean 0.0021.
+  EXPECT_NEAR(sum / back.pixels.size(), 100.3, 0.01);
+}
+
+TEST(Image, BlackAndWhiteStayPure) {
+  TemporaryFolder folder;
+  Image image{32, 32, {"R", "G", "B"}, std::vector<float>(32 * 32 * 3, 0.0f)};
+  std::fill(image.pixels.begin(), image.pixels.begin() + 32 * 16 * 3, 1.0f);
+  write_image(image, folder / "a.png", 0, "srgb");
+  const Image back = read_image(folder / "a.png");
+  EXPECT_EQ(*std::min_element(back.pixels.begin(), back.pixels.begin() + 32 * 16 * 3), 1.0f);
+  EXPECT_EQ(*std::max_element(back.pixels.begin() + 32 * 16 * 3, back.pixels.end()), 0.0f);
+}
+
+TEST(Image, NanIsRefusedWithItsPixel) {
+  TemporaryFolder folder;
+  Image image = ramp(4, 3, {"R", "G", "B"});
+  image.at(2, 1)[1] = std::numeric_limits<float>::quiet_NaN();
+  write_image(image, folder / "a.exr");
+  EXPECT_EQ(read_image(folder / "a.exr").width, 4) << "accepted where finite values are not asked for";
+  EXPECT_EQ(user_message([&] { read_image(folder / "a.exr", true); }),
+            (folder / "a.exr").string() + ": pixel (2, 1), channel G: nan is not a finite number");
+}
+
+TEST(Image, MissingFileIsRefused) {
+  EXPECT_EQ(user_message([] { read_image("/no/such.exr"); }), "/no/such.exr: no such image file");
+}
+
+TEST(Image, BrokenFilesAreRefused) {
+  TemporaryFolder folder;
+  write_image(ramp(64, 64, {"R", "G", "B"}), folder / "a.exr");
+  const std::string whole = file_text(folder / "a.exr");
+  folder.write("cut.exr", whole.substr(0, whole.size() / 2));
+  folder.write("text.png", "this is no image");
+  folder.write("empty.hdr", "");
+  for (const char* name : {"cut.exr", "text.png", "empty.hdr"}) {
+    const std::string message = user_message([&] { read_image(folder / name); });
+    EXPECT_NE(message.find("cannot be read as an image"), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
+
+TEST(Image, RealEnvironmentMapsAreReadWhole) {
+  const char* data = std::getenv("WALE_REAL_DATA");
+  if (!data) GTEST_SKIP() << "real data not present";
+  struct Known {
+    const char* name;
+    int width, height;
+    float luminance;  ///< of the brightest pixel
+  };
+  // Run-length RGBE and DWA-compressed half EXR.
+  for (const Known& known :
+       {Known{"blender-studiolights-hdr/studio.hdr", 1024, 512, 111}, {"pmndrs/city.exr", 512, 256, 10}}) {
+    const Image image = read_image(std::filesystem::path(data) / "envmaps" / known.name, true);
+    EXPECT_EQ(image.width, known.width) << known.name;
+    EXPECT_EQ(image.height, known.height) << known.name;
+    float largest = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const float* p = image.at(x, y);
+        largest = std::max(largest, 0.2126f * p[0] + 0.7152f * p[1] + 0.0722f * p[2]);
+      }
+    EXPECT_NEAR(largest, known.luminance, 0.55) << known.name;
+  }
+}
+
+TEST(Image, UnwritablePlacesAreRefusedBeforeRendering) {
+  TemporaryFolder folder;
+  EXPECT_EQ(user_message([] { require_writable("/no/such/folder/a.png"); }),
+            "/no/such/folder/a.png: the folder /no/such/folder does not exist; make it first");
+  EXPECT_EQ(user_message([] { require_writable("a.jpg"); }), "a.jpg: images are written as .exr or .png, not \".jpg\"");
+  std::filesystem::create_directory(folder / "dir.exr");
+  EXPECT_TRUE(user_message([&] { require_writable(folder / "dir.exr"); }).find("this is a folder") !=
+              std::string::npos);
+  EXPECT_TRUE(user_message([] { require_writable("/proc/a.png"); }).find("cannot be written") != std::string::npos);
+  require_writable(folder / "good.PNG");
+  EXPECT_EQ(folder.files(), 1u) << "the check leaves nothing behind";
+}
+
+TEST(AtomicFile, NothingIsLeftWithoutCommit) {
+  TemporaryFolder folder;
+  folder.write("a.txt", "old");
+  {
+    AtomicFile file(folder / "a.txt");
+    EXPECT_EQ(file.temporary().extension(), ".txt");
+    EXPECT_EQ(file.temporary().parent_path(), folder.path());
+    std::ofstream(file.temporary()) << "half";
+    EXPECT_EQ(folder.files(), 2u);
+  }
+  EXPECT_EQ(folder.files(), 1u);
+  EXPECT_EQ(file_text(folder / "a.txt"), "old");
+  write_text_file(folder / "a.txt", "new");
+  EXPECT_EQ(folder.files(), 1u);
+  EXPECT_EQ(file_text(folder / "a.txt"), "new");
+}
+
+TEST(AtomicFile, FullDiskIsReportedAndLeavesNothing) {
+  TemporaryFolder folder;
+  const std::string text(100000, 'x');
+  Image noise = ramp(200, 200, {"R", "G", "B"});
+  for (size_t i = 0; i < noise.pixels.size(); ++i) noise.pixels[i] = float(i * 2654435761u % 1000003u) * 1e-6f;
+  const std::pair<const char*, std::function<void()>> writers[] = {
+      {"text", [&] { write_text_file(folder / "a.txt", text); }},
+      {"exr", [&] { write_image(noise, folder / "a.exr"); }},
+      {"png", [&] { write_image(noise, folder / "a.png"); }},
+      {"curves",
+       [&] {
+         export_curves({{std::vector<std::array<float, 3>>(5000), 1}}, folder / "a.obj");
+       }},
+  };
+  for (const auto& [name, write] : writers) {
+    std::string message;
+    {
+      const FileSizeLimit limit(4096);
+      message = user_message(write);
+    }
+    EXPECT_NE(message.find("cannot be written"), std::string::npos) << name << ": " << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << name << ": " << message;
+    EXPECT_EQ(folder.files(), 0u) << name;
+  }
+}
+
+TEST(AtomicFile, RefusedRenameLeavesNothing) {
+  TemporaryFolder folder;
+  {
+    AtomicFile file(folder / "a.txt");
+    std::filesystem::create_directory(folder / "a.txt");  // appears in the meantime: rename must fail
+    const std::string message = user_message([&] { file.commit(); });
+    EXPECT_NE(message.find("a.txt: cannot be written"), std::string::npos) << message;
+  }
+  EXPECT_EQ(folder.files(), 1u);
+}
+
+TEST(ViewTransform, IsMonotoneAndStaysInRange) {
+  for (const char* view : {"neutral", "srgb"}) {
+    float before = -1;
+    for (float v = 0; v < 1e6f; v = v * 1.07f + 1e-4f) {
+      const float linear[3] = {v, v, v};
+      float display[3];
+      view_transform(linear, 0, view, display);
+      ASSERT_GE(display[0], before) << view << ' ' << v;
+      ASSERT_LE(display[0], 1.0f) << view << ' ' << v;
+      ASSERT_EQ(display[0], display[1]);
+      ASSERT_EQ(display[0], display[2]);
+      before = display[0];
+    }
+    EXPECT_GT(before, 0.99f) << view;
+  }
+}
+
+TEST(ViewTransform, NeutralKeepsMidtonesButForTheOffset) {
+  // Below the shoulder and above 0.08: c - 0.04, hue and saturation kept (Khronos PBR Neutral).
+  const float linear[3] = {0.5f, 0.3f, 0.1f};
+  float display[3];
+  view_transform(linear, 0, "neutral", display);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(srgb_to_linear(display[c]), linear[c] - 0.04, 1e-6);
+}
+
+TEST(ViewTransform, NeutralIsContinuousAtItsShoulder) {
+  float below[3], above[3];
+  const float a[3] = {0.79999f, 0.4f, 0.4f}, b[3] = {0.80001f, 0.4f, 0.4f};
+  view_transform(a, 0, "neutral", below);
+  view_transform(b, 0, "neutral", above);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(below[c], above[c], 3e-5);
+}
+
+TEST(ViewTransform, ExposureIsInStops) {
+  const float half[3] = {0.25f, 0.25f, 0.25f}, whole[3] = {0.5f, 0.5f, 0.5f};
+  float a[3], b[3];
+  view_transform(half, 1, "srgb", a);
+  view_transform(whole, 0, "srgb", b);
+  EXPECT_EQ(a[0], b[0]);
+  EXPECT_NEAR(b[0], 0.735357, 1e-5);  // sRGB encoding of 0.5
+}
+
+TEST(ViewTransform, NothingBadComesOut) {
+  const float bad = std::numeric_limits<float>::quiet_NaN(), big = std::numeric_limits<float>::infinity();
+  const float inputs[][3] = {{bad, 1, 1}, {big, 0, 0}, {-1, -2, -3}, {3e38f, 3e38f, 0}};
+  for (const auto& input : inputs)
+    for (const char* view : {"neutral", "srgb"}) {
+      float display[3];
+      view_transform(input, 20, view, display);
+      for (float v : display) EXPECT_TRUE(v >= 0 && v <= 1) << v;
+    }
+}
+
+TEST(ViewTransform, UnknownViewIsRefused) {
+  const float linear[3] = {0, 0, 0};
+  float display[3];
+  EXPECT_EQ(user_message([&] { view_transform(linear, 0, "filmic", display); }),
+            "view \"filmic\": not known; valid: \"neutral\", \"srgb\"");
+}
+
+}  // namespace
+}  // namespace wale

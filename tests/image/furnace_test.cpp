@@ -1,0 +1,65 @@
+// White furnace of the whole renderer: white fibres in a constant environment of radiance 1 look like nothing at all, at
+// any number of bounces. Energy that is lost, counted twice or sampled with a wrong density shows.
+#include <gtest/gtest.h>
+
+#include "tests/image/picture.h"
+
+namespace wale::test {
+namespace {
+
+constexpr Rgb kWhite{1, 1, 1};
+
+Scene one_ply() {
+  Scene scene = empty_scene(0.002, 32);
+  add_fabric(scene, straight_yarn(0.002, 0.0005), 0.006, 0.002, 1, "wool", kWhite);
+  return scene;
+}
+
+Scene three_ply_yarn() {
+  Scene scene = empty_scene(0.002, 32);
+  add_fabric(scene, straight_yarn(0.002, 0.0007), 0.006, 0.002, 3, "cotton", kWhite);
+  return scene;
+}
+
+Scene swatch() {
+  Scene scene = empty_scene(0.006, 32);
+  add_fabric(scene, stockinette_pattern(), 0.012, 0.012, 3, "silk", kWhite);
+  return scene;
+}
+
+struct Case {
+  const char* name;
+  Scene (*scene)();
+  const char* light_sampling;
+  int spp;
+};
+
+class WhiteFurnace : public testing::TestWithParam<Case> {};
+
+TEST_P(WhiteFurnace, EveryPixelIsOneThreeTimes) {
+  Scene scene = GetParam().scene();
+  scene.lights.push_back(constant_environment(1));
+  scene.integrator.light_sampling = GetParam().light_sampling;
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const Picture picture = take(scene, GetParam().spp, seed);
+    size_t tests = 0;
+    const double p = smallest_p(picture.image, 1.0, tests);
+    EXPECT_GT(p, sidak(0.01, tests)) << "seed " << seed;
+    for (const double mean : mean_rgb(picture.image)) EXPECT_NEAR(mean, 1.0, 0.002) << "seed " << seed;
+    for (const uint32_t events : picture.counts.events) EXPECT_EQ(events, 0u);
+    EXPECT_GT(picture.counts.bounce, picture.counts.primary / 4) << "the fabric was not hit";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, WhiteFurnace,
+                         testing::Values(Case{"OnePlyMis", one_ply, "mis", 128}, Case{"OnePlyLight", one_ply, "light", 512},
+                                         Case{"OnePlyBsdf", one_ply, "bsdf", 64},
+                                         Case{"YarnMis", three_ply_yarn, "mis", 128},
+                                         Case{"YarnLight", three_ply_yarn, "light", 512},
+                                         Case{"YarnBsdf", three_ply_yarn, "bsdf", 64},
+                                         Case{"SwatchMis", swatch, "mis", 128}, Case{"SwatchLight", swatch, "light", 1024},
+                                         Case{"SwatchBsdf", swatch, "bsdf", 64}),
+                         [](const auto& test) { return test.param.name; });
+
+}  // namespace
+}  // namespace wale::test
