@@ -73,11 +73,12 @@ void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
   if (features_.triangles || features_.spheres) stages.push_back({"stages/shade_surface.cl", {"shade_surface"}});
   if (features_.lights) stages.push_back({"stages/connect.cl", {"connect"}});
 
-  // One thread per stage: compilation is the whole of the start-up time.
+  // One thread per stage, where the driver bears it: compilation is the whole of the start-up time.
+  const auto policy = device_.traits().parallel_builds ? std::launch::async : std::launch::deferred;
   using Clock = std::chrono::steady_clock;
   std::vector<std::future<std::pair<cl::Program, double>>> builds;
   for (const auto& stage : stages)
-    builds.push_back(std::async(std::launch::async, [&, file = stage.file] {
+    builds.push_back(std::async(policy, [&, file = stage.file] {
       const auto start = Clock::now();
       cl::Program program = build_program(device_, file, features_.options(), kernel_dir);
       return std::pair(program, std::chrono::duration<double>(Clock::now() - start).count());
