@@ -10,8 +10,14 @@ namespace wale::test {
 namespace {
 std::string quoted(const std::string& word) {
   std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
+  for (const char c : word) {
+    if (c == '\'')
+      out.append("'\\''");
+    else
+      out.push_back(c);
+  }
+  out.push_back('\'');
+  return out;
 }
 }  // namespace
 
@@ -36,10 +42,10 @@ std::string everything_scene(int size, double wales) {
 int run_program(const std::vector<std::string>& environment, const std::vector<std::string>& arguments,
                 const std::filesystem::path& log) {
   std::string command = "env";
-  for (const std::string& variable : environment) command += " " + quoted(variable);
-  command += " " + quoted(WALE_PROGRAM);
-  for (const std::string& argument : arguments) command += " " + quoted(argument);
-  command += " >" + quoted(log.string()) + " 2>&1";
+  for (const std::string& variable : environment) command.append(" ").append(quoted(variable));
+  command.append(" ").append(quoted(WALE_PROGRAM));
+  for (const std::string& argument : arguments) command.append(" ").append(quoted(argument));
+  command.append(" >").append(quoted(log.string())).append(" 2>&1");
   const int status = std::system(command.c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
 }

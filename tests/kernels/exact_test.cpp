@@ -28,15 +28,19 @@ BaseMesh draped(double size) { return make_draped_square(size, size / 4, 32); }
 const Cloth kThree[] = {{"swatch, 3 plies", 3, swatch}, {"tube, 3 plies", 3, tube}, {"draped square, 3 plies", 3, draped}};
 const Cloth kOthers[] = {{"tube, 2 plies", 2, tube}, {"draped square, 5 plies", 5, draped}};
 
-/// Stockinette with stitches 2 mm wide on a cloth just large enough for about that many segments.
+/// Stockinette with stitches 2 mm wide on a cloth just large enough for about that many segments (a coarser polyline where
+/// the cloth would have no four stitches).
 Fabric knit(const Cloth& cloth, double segments) {
   FabricSpec spec;
   spec.name = cloth.name;
   spec.scale.kind = FabricScale::Kind::uv_metres;
   spec.plies = cloth.plies;
+  if (segments < 10000) spec.tolerance = 0.1;
   double size = 0.02;
-  for (int pass = 0; pass < 4; ++pass)
-    size = std::max(0.012, size * std::sqrt(segments / double(estimate_segments(cloth.mesh(size), stockinette_pattern(), spec))));
+  for (int pass = 0; pass < 4; ++pass) {
+    const double now = double(estimate_segments(cloth.mesh(size), stockinette_pattern(), spec));
+    size = std::max(0.008, size * std::sqrt(segments / now));
+  }
   return knit_fabric(cloth.mesh(size), stockinette_pattern(), spec);
 }
 
