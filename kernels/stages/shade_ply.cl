@@ -69,8 +69,9 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
     // One light sample seen from each of the two places a direction may leave from. Each counts only on its own side;
     // where both do (a thin set), one is taken at random and counts twice.
     const float4 ul = w_sample4(&sampler, W_SET_LIGHT(depth));
-    WLightSample a = w_light_sample(&lights, s.anchor + out, ul);
-    WLightSample b = w_light_sample(&lights, s.anchor + middle, ul);
+    const WLightSample a = w_light_sample(&lights, s.anchor + out, ul);
+    WLightSample b = a;
+    if (a.distance < 1e29f) b = w_light_sample(&lights, s.anchor + middle, ul);  // nearer lights show a parallax
     const int a_ok = a.pdf > 0.0f && dot(a.direction, s.n) > 0.0f;
     const int b_ok = b.pdf > 0.0f && !(dot(b.direction, s.n) > 0.0f);
     if (a_ok || b_ok) {
@@ -94,7 +95,7 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
   const float3 w = w_ply_sample(&shade, lobe, u.y, u.z, u.w);
   const float density = w_ply_pdf(&shade, lobe, w);
   float3 next = lobe_weight;
-  bins |= w_continue(&frame, &next, depth, w_sample4(&sampler, W_SET_ROULETTE(depth)).x);
+  bins |= w_continue(&frame, &next, depth, &sampler);
   weight[slot] = (float4)(next, 0.0f);
   ray_o[slot] = (float4)(s.anchor, as_float(W_NONE));
   ray_l[slot] = (float4)(w_leave(&s, out, middle, w), as_float(h.code));
