@@ -51,7 +51,7 @@ Json fabric_json(const Fabric& f, const MeshReport& mesh) {
 
 std::string build_report_json(const World& world) {
   Json json{{"fabrics", Json::array()}, {"triangles", world.triangle_count()}, {"spheres", world.spheres.size()},
-            {"seconds", world.seconds}};
+            {"notes", world.notes}, {"seconds", world.seconds}};
   for (size_t i = 0; i < world.fabrics.size(); ++i)
     json["fabrics"].push_back(fabric_json(world.fabrics[i], world.fabric_mesh_reports[i]));
   return json.dump(2) + "\n";
@@ -87,6 +87,7 @@ std::string build_report_text(const World& world) {
   }
   if (world.triangle_count() || !world.spheres.empty())
     out += fmt::format("props        {} triangles, {} spheres\n", world.triangle_count(), world.spheres.size());
+  for (const auto& note : world.notes) out += fmt::format("note         {}\n", note);
   for (const auto& [step, seconds] : world.seconds) out += fmt::format("time         {}: {:.3f} s\n", step, seconds);
   return out;
 }
