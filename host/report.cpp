@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "host/stages.h"
+
 namespace wale {
 namespace {
 
@@ -101,6 +103,9 @@ std::string plan_text(const World& world, const SceneDevice& scene, const Integr
   out += "left out\n";
   for (const auto& r : reasons)
     if (!r.used) out += fmt::format("  {:<20} {}\n", r.feature, r.because);
+  out += "programs\n";
+  for (const auto& s : wavefront_stages(features))
+    out += fmt::format("  {} {:<26} {}\n", s.used ? "+" : "-", s.file, s.because);
   out += fmt::format("kernel options\n  {}\nbuffers\n", features.options());
   uint64_t total = 0;
   for (const auto& [name, bytes] : scene.bytes()) {
@@ -112,9 +117,11 @@ std::string plan_text(const World& world, const SceneDevice& scene, const Integr
 
 std::string plan_json(const World& world, const SceneDevice& scene, const IntegratorScene& integrator,
                       const Features& features) {
-  Json json{{"features", Json::array()}, {"options", features.options()}, {"buffers", scene.bytes()}};
+  Json json{{"features", Json::array()}, {"programs", Json::array()}, {"options", features.options()}, {"buffers", scene.bytes()}};
   for (const auto& r : explain(world, integrator, features))
     json["features"].push_back({{"feature", r.feature}, {"used", r.used}, {"because", r.because}});
+  for (const auto& s : wavefront_stages(features))
+    json["programs"].push_back({{"file", s.file}, {"kernels", s.kernels}, {"used", s.used}, {"because", s.because}});
   return json.dump(2) + "\n";
 }
 

@@ -23,7 +23,8 @@ TEST_P(StagesCompile, InAllVariants) {
 INSTANTIATE_TEST_SUITE_P(All, StagesCompile,
                          testing::Values("stages/generate.cl", "stages/intersect.cl", "stages/miss.cl",
                                          "stages/shade_ply.cl", "stages/shade_surface.cl", "stages/connect.cl",
-                                         "stages/compact.cl", "stages/accumulate.cl"));
+                                         "stages/compact.cl", "stages/accumulate.cl",
+                                         "stages/accumulate_aov.cl"));
 
 }  // namespace
 }  // namespace wale
