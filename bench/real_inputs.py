@@ -34,7 +34,7 @@ def scene(data, mesh, tile, camera, light, scale, color, plies=3):
 
 def scenes(data):
     sock = {"position": [-0.146, -0.05, 0.75], "look_at": [-0.146, -0.112, -0.017], "fov": 23,
-            "front": [-0.45, 0.25, 0.6], "back": [-0.1, -0.05, -0.6]}
+            "front": [-0.45, 0.25, 0.6], "back": [0.25, 0.2, -0.55]}
     spot = {"position": [-2.4, 1.2, -3.0], "look_at": [0, 0.1, 0.1], "fov": 32, "front": [-3, 3, -2.5],
             "back": [2, 1, 3]}
     fine = {"gauge": {"wales": 50}}
