@@ -92,7 +92,7 @@ void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
   scene_.bind_scene(intersect, path(intersect, 1));
   auto& miss = kernel("miss");
   cl_uint next = scene_.bind_lights(miss, path(miss, 1));
-  set_args(miss, next, miss_list_.cl(), queue_counts_.cl(), kHits + 2);
+  set_args(miss, next, aov_.cl(), miss_list_.cl(), queue_counts_.cl(), kHits + 2);
   if (kernels_.contains("shade_ply")) {
     auto& k = kernel("shade_ply");
     next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1)));

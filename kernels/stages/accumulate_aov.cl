@@ -1,6 +1,7 @@
 #include "stages/path_state.clh"
 
-/* First-hit features: sums over samples of 4 x float4 per pixel, and the ply of the pixel's first sample. */
+/* First-hit features: sums over samples of 4 x float4 per pixel, the last w counts the samples that met something;
+   and the ply of the pixel's first sample. */
 __kernel void accumulate_aov(WFrame frame, WCamera camera, uint pixels, __global const float4* aov,
                              __global float4* film, __global uint* ply) {
   const uint g = get_global_id(0);
@@ -14,6 +15,6 @@ __kernel void accumulate_aov(WFrame frame, WCamera camera, uint pixels, __global
     film[pixel * 4] += in[0];
     film[pixel * 4 + 1] += in[1];
     film[pixel * 4 + 2] += in[2];
-    film[pixel * 4 + 3] += (float4)(in[3].xyz, 0.0f);
+    film[pixel * 4 + 3] += (float4)(in[3].xyz, in[0].w > 0.0f ? 1.0f : 0.0f);
   }
 }
