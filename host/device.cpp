@@ -44,6 +44,12 @@ DeviceTraits traits_of(const cl::Device& device) {
   t.lanes = !t.cpu ? 1 : native >= 16 ? 16 : native >= 8 ? 8 : 1;
   t.pool = t.cpu ? 1u << 16 : 1u << 21;
   t.local_size = std::min<size_t>(64, device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>());
+  // Oclgrind's compiler shares one LLVM context between threads and crashes when two of them build; its interpreter
+  // knows no intrinsic that inlining and optimising make (llvm.experimental.noalias.scope.decl, llvm.bitreverse).
+  if (t.platform.find("Oclgrind") != std::string::npos) {
+    t.parallel_builds = false;
+    t.build_options = " -cl-opt-disable -DW_PORTABLE";
+  }
   return t;
 }
 

@@ -20,6 +20,8 @@ struct DeviceTraits {
   unsigned lanes = 1;        ///< width of explicit vectors: 1, 8 or 16 (W_LANES)
   uint32_t pool = 1u << 16;  ///< paths in flight
   unsigned local_size = 64;  ///< work-group size of every kernel
+  bool parallel_builds = true;  ///< programs may be compiled on several threads at once
+  std::string build_options;    ///< what this driver's compiler needs
 };
 
 /// Programs already built for a device, by source and options: an edit that changes neither compiles nothing.

@@ -48,7 +48,7 @@ void expand(const std::string& text, const std::string& file, const std::filesys
 }
 
 cl::Program compile(const Device& device, const std::string& source, const std::string& file, std::string options) {
-  options += " -cl-std=CL1.2";
+  options += " -cl-std=CL1.2" + device.traits().build_options;
   if (options.find("W_LANES") == std::string::npos) options += fmt::format(" -DW_LANES={}", device.traits().lanes);
   const std::string key = options + '\n' + source;
   {

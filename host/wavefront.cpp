@@ -64,11 +64,12 @@ void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
   std::vector<Stage> stages = wavefront_stages(features_);
   std::erase_if(stages, [](const Stage& stage) { return !stage.used; });
 
-  // One thread per stage: compilation is the whole of the start-up time.
+  // One thread per stage, where the driver bears it: compilation is the whole of the start-up time.
+  const auto policy = device_.traits().parallel_builds ? std::launch::async : std::launch::deferred;
   using Clock = std::chrono::steady_clock;
   std::vector<std::future<std::pair<cl::Program, double>>> builds;
   for (const auto& stage : stages)
-    builds.push_back(std::async(std::launch::async, [&, file = stage.file] {
+    builds.push_back(std::async(policy, [&, file = stage.file] {
       const auto start = Clock::now();
       cl::Program program = build_program(device_, file, features_.options(), kernel_dir);
       return std::pair(program, std::chrono::duration<double>(Clock::now() - start).count());

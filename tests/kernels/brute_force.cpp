@@ -74,6 +74,18 @@ BruteForce::BruteForce(const std::vector<PlyPatch>& patches, const std::vector<f
         reach_.push_back(std::pow(0.5 * glm::length(s.end - s.start) + 2.1 * s.radius, 2));
       }
     }
+  for (size_t begin = 0; begin < segments_.size(); begin += kBlock) {
+    const size_t end = std::min(begin + kBlock, segments_.size());
+    dvec3 c(0);
+    for (size_t i = begin; i < end; ++i) c += dvec3(x_[i], y_[i], z_[i]) / double(end - begin);
+    double reach = 0;
+    for (size_t i = begin; i < end; ++i)
+      reach = std::max(reach, glm::length(dvec3(x_[i], y_[i], z_[i]) - c) + std::sqrt(reach_[i]));
+    block_x_.push_back(c.x);
+    block_y_.push_back(c.y);
+    block_z_.push_back(c.z);
+    block_reach_.push_back(reach * reach * (1 + 1e-9));
+  }
 }
 
 OracleHit BruteForce::closest(const Ray& ray, long skip) const {
@@ -81,14 +93,21 @@ OracleHit BruteForce::closest(const Ray& ray, long skip) const {
   const dvec3 o = dvec3(ray.o[0], ray.o[1], ray.o[2]) + dvec3(ray.l[0], ray.l[1], ray.l[2]);
   const dvec3 d(ray.d[0], ray.d[1], ray.d[2]);
   const double dd = glm::dot(d, d);
-  std::vector<uint8_t> near(segments_.size());
-  for (size_t i = 0; i < segments_.size(); ++i) {
-    const double x = x_[i] - o.x, y = y_[i] - o.y, z = z_[i] - o.z;
+  // The ray's line passes the sphere of squared radius `reach` round (cx, cy, cz).
+  const auto meets = [&](double cx, double cy, double cz, double reach) {
+    const double x = cx - o.x, y = cy - o.y, z = cz - o.z;
     const double along = x * d.x + y * d.y + z * d.z;
-    near[i] = (x * x + y * y + z * z) - along * along / dd <= reach_[i];
-  }
+    return (x * x + y * y + z * z) - along * along / dd <= reach;
+  };
+  std::vector<uint8_t> near_block(block_x_.size());
+  for (size_t b = 0; b < near_block.size(); ++b)
+    near_block[b] = meets(block_x_[b], block_y_[b], block_z_[b], block_reach_[b]);
   for (size_t i = 0; i < segments_.size(); ++i) {
-    if (!near[i] || long(segments_[i].id) == skip) continue;
+    if (!near_block[i / kBlock]) {
+      i = (i / kBlock + 1) * kBlock - 1;
+      continue;
+    }
+    if (!meets(x_[i], y_[i], z_[i], reach_[i]) || long(segments_[i].id) == skip) continue;
     const Segment& s = segments_[i];
     const double r = s.radius, eps = 1e-5 * r;
     double t = 1e30, h = 0;

@@ -42,7 +42,11 @@ class BruteForce {
     uint32_t id;
   };
   std::vector<Segment> segments_;
-  std::vector<double> x_, y_, z_, reach_;  // centres and bounding radii, apart for a fast first test
+  std::vector<double> x_, y_, z_, reach_;  // centres and squared bounding radii, apart for a fast first test
+  // Spheres round kBlock consecutive segments, which lie beside each other on one yarn: they spare the test of segments
+  // that the ray passes by far, and share nothing with the device's tree.
+  static constexpr size_t kBlock = 32;
+  std::vector<double> block_x_, block_y_, block_z_, block_reach_;
 };
 
 }  // namespace wale::test

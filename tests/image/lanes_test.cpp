@@ -1,0 +1,67 @@
+// The same picture from every width of the explicit vectors, and from another OpenCL driver.
+#include <gtest/gtest.h>
+
+#include "tests/host/temporary_folder.h"
+#include "tests/image/picture.h"
+#include "tests/image/program.h"
+
+namespace wale::test {
+namespace {
+
+Scene everything(int size, double wales) {
+  const TemporaryFolder folder;
+  return read_scene(folder.write("scene.json", everything_scene(size, wales)));
+}
+
+void expect_same_mean(const Image& a, const Image& b, const std::string& what) {
+  size_t tests = 0;
+  const double p = smallest_p(a, b, tests);
+  EXPECT_GT(p, sidak(0.01, tests)) << what;
+}
+
+TEST(Lanes, EveryWidthGivesTheSamePicture) {
+  Scene scene = everything(24, 30);
+  scene.integrator.lanes = 16;
+  const Picture reference = take(scene, 32, 1), independent = take(scene, 32, 2);
+  const size_t pixels = size_t(reference.image.width) * reference.image.height;
+  for (const int lanes : {1, 8}) {
+    scene.integrator.lanes = lanes;
+    const Picture picture = take(scene, 32, 1);
+    expect_same_mean(picture.image, independent.image, std::to_string(lanes) + " lanes");
+    // Same seed, same paths; a compiler may still round a scalar and a vector expression differently.
+    EXPECT_LE(different_pixels(reference.image, picture.image), pixels / 100) << lanes << " lanes";
+    EXPECT_GT(picture.counts.bounce, picture.counts.primary / 4) << "the fabric was not hit";
+  }
+}
+
+/// Oclgrind's driver: a simulator that shares no code with PoCL and runs on any machine. Empty when not installed.
+std::filesystem::path oclgrind() {
+  const std::string name = "liboclgrind-rt-icd.so";
+  for (const char* folder : {"/usr/lib/oclgrind", "/usr/local/lib/oclgrind", "/usr/local/lib", "/usr/lib"})
+    if (std::filesystem::exists(std::filesystem::path(folder) / name)) return std::filesystem::path(folder) / name;
+  return {};
+}
+
+TEST(Drivers, OclgrindGivesTheSamePicture) {
+  const auto driver = oclgrind();
+  if (driver.empty()) GTEST_SKIP() << "Oclgrind is not installed (apt-get install oclgrind)";
+  const TemporaryFolder folder, vendors;
+  vendors.write("oclgrind.icd", driver.string() + "\n");
+  // A simulated second is long: few pixels, a coarse cloth, two scattering events.
+  const auto scene = folder.write("scene.json", everything_scene(10, 12)), picture = folder / "oclgrind.exr";
+  const std::vector<std::string> environment = {"OCL_ICD_VENDORS=" + vendors.path().string() + "/"};
+  ASSERT_EQ(run_program(environment, {"devices"}, folder / "devices.txt"), 0) << file_text(folder / "devices.txt");
+  ASSERT_NE(file_text(folder / "devices.txt").find("Oclgrind"), std::string::npos) << file_text(folder / "devices.txt");
+  const std::string shorter = "integrator.max_depth=2", coarser = "fabrics.0.tolerance=0.3";
+  ASSERT_EQ(run_program(environment,
+                        {"render", scene.string(), "-o", picture.string(), "--spp", "8", "--quiet", "--set", shorter,
+                         "--set", coarser, "--set", "integrator.seed=1"},
+                        folder / "log.txt"),
+            0)
+      << file_text(folder / "log.txt");
+  const Picture expected = take(read_scene(scene, {shorter, coarser}), 256, 2);
+  expect_same_mean(expected.image, read_image(picture), "Oclgrind");
+}
+
+}  // namespace
+}  // namespace wale::test

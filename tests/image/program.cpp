@@ -1,0 +1,62 @@
+#include "tests/image/program.h"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <cstring>
+
+namespace wale::test {
+namespace {
+std::string quoted(const std::string& word) {
+  std::string out = "'";
+  for (const char c : word) {
+    if (c == '\'')
+      out.append("'\\''");
+    else
+      out.push_back(c);
+  }
+  out.push_back('\'');
+  return out;
+}
+}  // namespace
+
+std::string everything_scene(int size, double wales) {
+  return fmt::format(R"({{
+  "wale": 1,
+  "units": "mm",
+  "camera": {{"position": [10, -40, 45], "look_at": [0, 0, 3], "up": [0, 0, 1], "fov": 30}},
+  "film": {{"size": [{0}, {0}]}},
+  "materials": {{"yarn": {{"type": "ply", "preset": "wool", "color": [0.8, 0.5, 0.3]}},
+                "floor": {{"type": "coated", "color": [0.4, 0.4, 0.5]}}}},
+  "fabrics": [{{"name": "cloth", "mesh": {{"generator": "draped_square", "size": 30, "sphere_radius": 8, "nu": 16}},
+               "pattern": {{"builtin": "stockinette"}}, "gauge": {{"wales": {1}}}, "yarn": {{"plies": 3}},
+               "material": "yarn"}}],
+  "objects": [{{"type": "ground", "up": [0, 0, 1], "height": -12, "extent": 500, "material": "floor"}}],
+  "lights": [{{"type": "sphere", "position": [-30, -20, 40], "radius": 5, "radiance": 40}},
+             {{"type": "environment", "radiance": [0.5, 0.6, 0.8], "up": [0, 0, 1]}}]
+}})",
+                     size, wales);
+}
+
+int run_program(const std::vector<std::string>& environment, const std::vector<std::string>& arguments,
+                const std::filesystem::path& log) {
+  std::string command = "env";
+  for (const std::string& variable : environment) command.append(" ").append(quoted(variable));
+  command.append(" ").append(quoted(WALE_PROGRAM));
+  for (const std::string& argument : arguments) command.append(" ").append(quoted(argument));
+  command.append(" >").append(quoted(log.string())).append(" 2>&1");
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+}
+
+size_t different_pixels(const Image& a, const Image& b) {
+  const size_t pixels = size_t(a.width) * a.height, stride = a.channels.size();
+  if (a.width != b.width || a.height != b.height || a.channels != b.channels) return std::max<size_t>(1, pixels);
+  size_t differ = 0;
+  for (size_t i = 0; i < pixels; ++i)
+    differ += std::memcmp(a.pixels.data() + i * stride, b.pixels.data() + i * stride, stride * sizeof(float)) != 0;
+  return differ;
+}
+
+}  // namespace wale::test
