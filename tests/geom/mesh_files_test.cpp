@@ -130,7 +130,8 @@ TEST_F(MeshFiles, UnknownSuffix) {
 
 TEST_F(MeshFiles, NotAMesh) {
   for (const char* name : {"x.obj", "x.ply", "x.off"}) {
-    const auto file = write(name, std::string("\x89PNG\r\n\x1a\n\0\0 binary rubbish \xff\xfe", 32));
+    const char rubbish[] = "\x89PNG\r\n\x1a\n\0\0 binary rubbish \xff\xfe";
+    const auto file = write(name, std::string(rubbish, sizeof rubbish));
     expect_contains(message([&] { read_mesh(file); }), "not a mesh");
   }
 }
