@@ -87,6 +87,8 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
     world = build_world(scene, loaders, [&](const std::string&, double fraction) { bar.update(fraction); });
     bar.finish();
   }
+  if (!args.quiet)
+    for (const auto& note : world.notes) fmt::print(stderr, "note: {}\n", note);
   const SceneDevice on_device(device, world, local_stage(scene.integrator));
   RenderOptions options;
   options.spp = args.spp > 0 ? args.spp : scene.integrator.spp;
