@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "geom/error.h"
+#include "host/atomic_file.h"
 #include "host/commands.h"
 #include "host/progress.h"
 #include "host/render.h"
@@ -76,6 +77,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
     require_writable(output);
     aovs |= output.extension() == ".exr";
   }
+  if (!args.stats.empty()) require_writable_path(args.stats);
   const Device device = Device::open(args.device);
   catch_stop_signals();
 
