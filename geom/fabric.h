@@ -24,7 +24,7 @@ struct FabricSpec {
   double thickness = 1;        ///< factor on the yarn radius that the tile implies
   double ply_radius = 0;       ///< metres in the cloth; 0 = as many touching circles as fill the yarn
   double height_offset = 0;    ///< metres along the base normal
-  double tolerance = 0.02;     ///< ply radii
+  double tolerance = 0.05;     ///< ply radii
   double patches_per_cell = 12;  ///< wanted size of a UV cell
 };
 

@@ -8,6 +8,7 @@
 
 #include "geom/base_mesh.h"
 #include "geom/error.h"
+#include "geom/mesh_text_check.h"
 #include "geom/polygon_soup.h"
 
 namespace wale {
@@ -105,6 +106,14 @@ PolygonSoup read_with_openmesh(const std::string& file) {
   return std::move(soup);
 }
 
+std::string whole_text(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) user_error("{}: cannot be opened for reading; check its permissions", file.string());
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
 }  // namespace
 
 BaseMesh read_mesh(const std::filesystem::path& file) {
@@ -116,12 +125,9 @@ BaseMesh read_mesh(const std::filesystem::path& file) {
 
   PolygonSoup soup;
   if (suffix == ".obj") {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) user_error("{}: cannot be opened for reading; check its permissions", file.string());
-    std::ostringstream text;
-    text << stream.rdbuf();
-    soup = parse_obj(text.str(), file.string());
+    soup = parse_obj(whole_text(file), file.string());
   } else if (suffix == ".ply" || suffix == ".off") {
+    (suffix == ".ply" ? require_whole_ply : require_whole_off)(whole_text(file), file.string());
     soup = read_with_openmesh(file.string());
   } else {
     user_error("{}: unknown mesh format '{}'; use .obj, .ply or .off", file.string(), suffix);

@@ -1,5 +1,8 @@
 // Closed-form plain knit after Crane's "plain knit yarn", the side of the Vs towards +z:
-//   g(t) = (t + a sin 2t, h cos t, -d cos 2t),  a = 3/2, h = 4, d = 1, rows h + 1/2 apart, one stitch per 2 pi.
+//   g(t) = (t + a sin 2t, h cos t, -d cos 2t),  rows `row` apart, one stitch per 2 pi.
+// Crane draws a = 3/2, h = 4, d = 1, row = 9/2; relaxed knits have flatter stitches (a course of 0.53 to 0.61 wales).
+// h = 3, d = 1.1, row = 3.6 keep the topology (the rows stay apart on the straight way from one to the other) and the
+// same distance between rows, at a course of 0.57 wales.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,7 +13,7 @@
 namespace wale {
 namespace {
 
-constexpr double kRound = 1.5, kHeight = 4, kDepth = 1, kRow = kHeight + 0.5;
+constexpr double kRound = 1.5, kHeight = 3, kDepth = 1.1, kRow = 3.6;
 constexpr double kTwoPi = 2 * std::numbers::pi;
 
 dvec3 loop(double t) { return {t + kRound * std::sin(2 * t), kHeight * std::cos(t), -kDepth * std::cos(2 * t)}; }

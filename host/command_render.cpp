@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "geom/error.h"
+#include "host/atomic_file.h"
 #include "host/commands.h"
 #include "host/progress.h"
 #include "host/render.h"
@@ -76,6 +77,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
     require_writable(output);
     aovs |= output.extension() == ".exr";
   }
+  if (!args.stats.empty()) require_writable_path(args.stats);
   const Device device = Device::open(args.device);
   catch_stop_signals();
 
@@ -85,6 +87,8 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
     world = build_world(scene, loaders, [&](const std::string&, double fraction) { bar.update(fraction); });
     bar.finish();
   }
+  if (!args.quiet)
+    for (const auto& note : world.notes) fmt::print(stderr, "note: {}\n", note);
   const SceneDevice on_device(device, world, local_stage(scene.integrator));
   RenderOptions options;
   options.spp = args.spp > 0 ? args.spp : scene.integrator.spp;

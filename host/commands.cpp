@@ -24,6 +24,10 @@ World world_of(const Scene& scene, const Loaders& loaders, bool quiet) {
   return world;
 }
 
+void require_json_path(const std::filesystem::path& file) {
+  if (!file.empty() && file != "-") require_writable_path(file);
+}
+
 void deliver(const std::filesystem::path& json_file, const std::string& json, const std::string& text) {
   if (json_file == "-")
     fmt::print("{}", json);
@@ -35,6 +39,7 @@ void deliver(const std::filesystem::path& json_file, const std::string& json, co
 }  // namespace
 
 int run_build(const SceneArgs& args, const std::filesystem::path& json, const Loaders& loaders) {
+  require_json_path(json);
   const Scene scene = read_scene(args.scene, args.set);
   const World world = world_of(scene, loaders, args.quiet);
   deliver(json, build_report_json(world), build_report_text(world));
@@ -42,6 +47,7 @@ int run_build(const SceneArgs& args, const std::filesystem::path& json, const Lo
 }
 
 int run_plan(const SceneArgs& args, const std::filesystem::path& json, const Loaders& loaders) {
+  require_json_path(json);
   const Scene scene = read_scene(args.scene, args.set);
   const Device device = Device::open(args.device);
   const World world = world_of(scene, loaders, args.quiet);
@@ -53,7 +59,7 @@ int run_plan(const SceneArgs& args, const std::filesystem::path& json, const Loa
 }
 
 int run_export(const SceneArgs& args, const std::filesystem::path& output, const Loaders& loaders) {
-  require_writable_path(output);
+  require_export_path(output);
   const Scene scene = read_scene(args.scene, args.set);
   const Device device = Device::open(args.device);
   const World world = world_of(scene, loaders, args.quiet);

@@ -92,18 +92,27 @@ void check(const std::vector<ExportCurve>& curves, const std::string& file) {
   }
 }
 
+using Writer = void (*)(const std::vector<ExportCurve>&, Out&);
+
+Writer writer_for(const std::filesystem::path& file) {
+  const std::string suffix = file.extension().string();
+  if (suffix == ".obj") return write_obj_lines;
+  if (suffix == ".pbrt") return write_pbrt;
+  if (suffix == ".txt") return write_mitsuba;
+  if (suffix == ".usda") return write_usda;
+  user_error("{}: no export format has the suffix \"{}\"; valid: .obj, .pbrt, .txt (Mitsuba), .usda", file.string(),
+             suffix);
+}
+
 }  // namespace
 
+void require_export_path(const std::filesystem::path& file) {
+  writer_for(file);
+  require_writable_path(file);
+}
+
 void export_curves(const std::vector<ExportCurve>& curves, const std::filesystem::path& file) {
-  const std::string suffix = file.extension().string();
-  const auto write = suffix == ".obj"    ? write_obj_lines
-                     : suffix == ".pbrt" ? write_pbrt
-                     : suffix == ".txt"  ? write_mitsuba
-                     : suffix == ".usda" ? write_usda
-                                         : nullptr;
-  if (!write)
-    user_error("{}: no export format has the suffix \"{}\"; valid: .obj, .pbrt, .txt (Mitsuba), .usda", file.string(),
-               suffix);
+  const auto write = writer_for(file);
   check(curves, file.string());
   AtomicFile target(file);
   std::ofstream out(target.temporary());

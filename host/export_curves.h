@@ -21,4 +21,7 @@ struct ExportCurve {
 /// that is not finite, or a file that cannot be written. Numbers read back to the same float.
 void export_curves(const std::vector<ExportCurve>& curves, const std::filesystem::path& file);
 
+/// Throws what export_curves would throw about the name of the file; called before the knitting starts.
+void require_export_path(const std::filesystem::path& file);
+
 }  // namespace wale

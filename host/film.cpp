@@ -50,13 +50,13 @@ Image develop(const FilmSums& sums, const double origin[3]) {
     out[6] = float(count);
     if (!aov) continue;
     const w_float4* a = &sums.aov[i * 4];
-    const double k = 1 / count;
-    const std::array<double, 15> v = {a[0].x * k, a[0].y * k, a[0].z * k, a[0].w * k, a[1].x * k,
-                                      a[1].y * k, a[1].z * k, a[1].w * k, a[2].x * k, a[2].y * k,
-                                      a[2].z * k, a[2].w * k, a[3].x * k, a[3].y * k, a[3].z * k};
-    for (size_t c = 0; c < v.size(); ++c) out[7 + c] = float(v[c]);
-    // Features are averages over all samples; those that met nothing count as zero, and have no place in the world.
-    for (int c = 0; c < 3; ++c) out[7 + 12 + c] += float(a[0].w > 0 ? origin[c] : 0);
+    // Colours and directions are averages over all samples, nothing counting as zero, as denoisers expect. A place has
+    // no such average: distance, uv and position are those of the samples that met something.
+    const double hits = a[3].w, k = 1 / count, place = hits > 0 ? 1 / hits : 0;
+    const std::array<double, 15> v = {a[0].x * k, a[0].y * k, a[0].z * k,     a[0].w * place, a[1].x * k,
+                                      a[1].y * k, a[1].z * k, a[1].w * place, a[2].x * k,     a[2].y * k,
+                                      a[2].z * k, a[2].w * place, a[3].x * place, a[3].y * place, a[3].z * place};
+    for (size_t c = 0; c < v.size(); ++c) out[7 + c] = float(v[c] + (c >= 12 && hits > 0 ? origin[c - 12] : 0));
     out[22] = sums.ply[i] == W_NONE ? -1.0f : float(sums.ply[i]);
   }
   return image;

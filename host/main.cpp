@@ -1,4 +1,6 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 
@@ -6,18 +8,59 @@
 #include "geom/error.h"
 #include "host/commands.h"
 #include "host/device.h"
+#include "host/suggest.h"
 
 namespace {
 
 using wale::RenderArgs;
 using wale::SceneArgs;
 
+// A finite number, at least 0 or above 0. CLI11's own checks let NaN pass and quote the largest double.
+CLI::Validator finite_number(bool zero_too) {
+  return CLI::Validator(
+      [zero_too](const std::string& text) {
+        double value = 0;
+        if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && (value > 0 || (zero_too && value == 0)))
+          return std::string();
+        return text + (zero_too ? ": a number of at least 0 is needed" : ": a number above 0 is needed");
+      },
+      "NUMBER");
+}
+
 void add_scene_options(CLI::App& command, SceneArgs& args) {
   command.add_option("SCENE", args.scene, "scene file")->required();
-  command.add_option("--set", args.set, "change a key of the scene: key.path=value (repeatable)")->take_all();
+  command.add_option("--set", args.set, "change a key of the scene: key.path=value (repeatable)")
+      ->allow_extra_args(false);
   command.add_option("--device", args.device, "number of the OpenCL device, see `wale devices`");
   command.add_option("--kernel-dir", args.kernel_dir, "read kernels from this folder instead of the built-in ones");
   command.add_flag("--quiet", args.quiet, "no progress");
+}
+
+// What CLI11 could not place, with the nearest valid word.
+std::string advice(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> left = app.remaining(true);
+  const auto chosen = app.get_subcommands();
+  if (chosen.empty()) {
+    std::vector<std::string> names;
+    for (const auto* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
+    if (left.empty()) return "a command is needed; " + wale::nearest_choice("", names);
+    return left.front() + ": no such command; " + wale::nearest_choice(left.front(), names);
+  }
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr || left.empty()) return error.what();
+  const auto option = std::find_if(left.begin(), left.end(), [](const auto& word) { return word.starts_with("-"); });
+  if (option == left.end()) return left.front() + ": one word too many";
+  std::vector<std::string> names;
+  for (const auto* known : chosen.front()->get_options())
+    for (const auto& name : known->get_lnames()) names.push_back("--" + name);
+  return *option + ": no such option of `wale " + chosen.front()->get_name() + "`; " +
+         wale::nearest_choice(*option, names);
+}
+
+// Control characters, from a file name or a key, would break the message into lines.
+std::string one_line(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+  return text;
 }
 
 int run(int argc, char** argv) {
@@ -30,9 +73,9 @@ int run(int argc, char** argv) {
   RenderArgs render;
   auto* c = app.add_subcommand("render", "render a scene to images (.exr with features, .png)");
   add_scene_options(*c, render);
-  c->add_option("-o,--output", render.outputs, "image to write (repeatable)")->required();
+  c->add_option("-o,--output", render.outputs, "image to write (repeatable)")->required()->allow_extra_args(false);
   c->add_option("--spp", render.spp, "samples per pixel")->check(CLI::Range(1, 1 << 24));
-  c->add_option("--seconds", render.seconds, "stop after this time")->check(CLI::PositiveNumber);
+  c->add_option("--seconds", render.seconds, "stop after this many seconds")->check(finite_number(false));
   c->add_option("--size", render.size, "WIDTHxHEIGHT");
   c->add_option("--stats", render.stats, "write what was done as JSON");
   c->callback([&] { status = wale::run_render(render, loaders); });
@@ -55,7 +98,7 @@ int run(int argc, char** argv) {
   c = app.add_subcommand("compare", "compare two images");
   c->add_option("A", image_a, "image")->required();
   c->add_option("B", image_b, "reference image")->required();
-  c->add_option("--max-rmse", max_rmse, "fail when the RMSE is larger");
+  c->add_option("--max-rmse", max_rmse, "fail when the RMSE is larger")->check(finite_number(true));
   c->callback([&] { status = wale::run_compare(image_a, image_b, max_rmse); });
   c = app.add_subcommand("devices", "list the OpenCL devices");
   c->callback([&] { status = wale::run_devices(); });
@@ -67,7 +110,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& e) {
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
-    std::fprintf(stderr, "wale: %s (see `wale --help`)\n", e.what());
+    std::fprintf(stderr, "wale: %s (see `wale --help`)\n", one_line(advice(app, e)).c_str());
     return 1;
   }
   return status;
@@ -79,7 +122,9 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const wale::Error& e) {
-    std::fprintf(stderr, "wale: %s\n", e.what());
+    // A device's build log keeps its lines; what the user did wrong is one.
+    const bool user = e.fault() == wale::Fault::user;
+    std::fprintf(stderr, "wale: %s\n", user ? one_line(e.what()).c_str() : e.what());
     return static_cast<int>(e.fault());
   } catch (const cl::Error& e) {
     std::fprintf(stderr, "wale: OpenCL: %s failed with error %d\n", e.what(), e.err());

@@ -11,6 +11,8 @@ namespace {
 
 constexpr int kBarWidth = 28;
 constexpr auto kRedraw = std::chrono::milliseconds(100);
+// A log gets a line per tenth, and where a tenth takes long: one soon, then now and then.
+constexpr auto kFirstLine = std::chrono::seconds(1), kLaterLine = std::chrono::seconds(10);
 
 }  // namespace
 
@@ -47,8 +49,10 @@ void Progress::update(double fraction, const std::string& note) {
     last_draw_ = now;
   } else {
     const int tenth = int(fraction * 10 + 1e-9);
-    if (tenth <= last_tenth_ || tenth == 10) return;  // 100 % is finish()'s line
+    const bool silent = last_draw_ < start_ ? now - start_ > kFirstLine : now - last_draw_ > kLaterLine;
+    if (tenth == 10 || (tenth <= last_tenth_ && !silent)) return;  // 100 % is finish()'s line
     last_tenth_ = tenth;
+    last_draw_ = now;
   }
   draw(fraction, note, false);
 }

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "host/stages.h"
+
 namespace wale {
 namespace {
 
@@ -51,7 +53,7 @@ Json fabric_json(const Fabric& f, const MeshReport& mesh) {
 
 std::string build_report_json(const World& world) {
   Json json{{"fabrics", Json::array()}, {"triangles", world.triangle_count()}, {"spheres", world.spheres.size()},
-            {"seconds", world.seconds}};
+            {"notes", world.notes}, {"seconds", world.seconds}};
   for (size_t i = 0; i < world.fabrics.size(); ++i)
     json["fabrics"].push_back(fabric_json(world.fabrics[i], world.fabric_mesh_reports[i]));
   return json.dump(2) + "\n";
@@ -87,6 +89,7 @@ std::string build_report_text(const World& world) {
   }
   if (world.triangle_count() || !world.spheres.empty())
     out += fmt::format("props        {} triangles, {} spheres\n", world.triangle_count(), world.spheres.size());
+  for (const auto& note : world.notes) out += fmt::format("note         {}\n", note);
   for (const auto& [step, seconds] : world.seconds) out += fmt::format("time         {}: {:.3f} s\n", step, seconds);
   return out;
 }
@@ -100,6 +103,9 @@ std::string plan_text(const World& world, const SceneDevice& scene, const Integr
   out += "left out\n";
   for (const auto& r : reasons)
     if (!r.used) out += fmt::format("  {:<20} {}\n", r.feature, r.because);
+  out += "programs\n";
+  for (const auto& s : wavefront_stages(features))
+    out += fmt::format("  {} {:<26} {}\n", s.used ? "+" : "-", s.file, s.because);
   out += fmt::format("kernel options\n  {}\nbuffers\n", features.options());
   uint64_t total = 0;
   for (const auto& [name, bytes] : scene.bytes()) {
@@ -111,9 +117,11 @@ std::string plan_text(const World& world, const SceneDevice& scene, const Integr
 
 std::string plan_json(const World& world, const SceneDevice& scene, const IntegratorScene& integrator,
                       const Features& features) {
-  Json json{{"features", Json::array()}, {"options", features.options()}, {"buffers", scene.bytes()}};
+  Json json{{"features", Json::array()}, {"programs", Json::array()}, {"options", features.options()}, {"buffers", scene.bytes()}};
   for (const auto& r : explain(world, integrator, features))
     json["features"].push_back({{"feature", r.feature}, {"used", r.used}, {"because", r.because}});
+  for (const auto& s : wavefront_stages(features))
+    json["programs"].push_back({{"file", s.file}, {"kernels", s.kernels}, {"used", s.used}, {"because", s.because}});
   return json.dump(2) + "\n";
 }
 

@@ -135,7 +135,7 @@ Type fabric() {
           {"uv_metres", only_true(), "UVs are metres and the tile keeps its own size"},
           {"yarn", yarn, "plies of the yarn", "{}"},
           {"height_offset", length(kAnyLength), "along the normal of the base mesh", "0"},
-          {"tolerance", number({1e-4, 1}), "of the ply curves, in ply radii", "0.02"},
+          {"tolerance", number({1e-4, 1}), "of the ply curves, in ply radii", "0.05"},
           {"material", text(), "name of a ply material; absent = wool"},
       },
       {{{"repeats", "gauge", "uv_metres"}, true}});

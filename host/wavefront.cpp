@@ -6,6 +6,7 @@
 
 #include "geom/error.h"
 #include "host/program.h"
+#include "host/stages.h"
 
 namespace wale {
 namespace {
@@ -60,18 +61,8 @@ Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Featu
 }
 
 void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
-  struct Stage {
-    std::string file;
-    std::vector<std::string> kernels;
-  };
-  std::vector<Stage> stages = {{"stages/generate.cl", {"generate"}},
-                               {"stages/intersect.cl", {"intersect"}},
-                               {"stages/miss.cl", {"miss"}},
-                               {"stages/compact.cl", {"compact_count", "compact_scan", "compact_scatter"}},
-                               {"stages/accumulate.cl", {"accumulate", "accumulate_aov"}}};
-  if (features_.plies) stages.push_back({"stages/shade_ply.cl", {"shade_ply"}});
-  if (features_.triangles || features_.spheres) stages.push_back({"stages/shade_surface.cl", {"shade_surface"}});
-  if (features_.lights) stages.push_back({"stages/connect.cl", {"connect"}});
+  std::vector<Stage> stages = wavefront_stages(features_);
+  std::erase_if(stages, [](const Stage& stage) { return !stage.used; });
 
   // One thread per stage, where the driver bears it: compilation is the whole of the start-up time.
   const auto policy = device_.traits().parallel_builds ? std::launch::async : std::launch::deferred;
@@ -102,13 +93,13 @@ void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
   scene_.bind_scene(intersect, path(intersect, 1));
   auto& miss = kernel("miss");
   cl_uint next = scene_.bind_lights(miss, path(miss, 1));
-  set_args(miss, next, miss_list_.cl(), queue_counts_.cl(), kHits + 2);
-  if (features_.plies) {
+  set_args(miss, next, aov_.cl(), miss_list_.cl(), queue_counts_.cl(), kHits + 2);
+  if (kernels_.contains("shade_ply")) {
     auto& k = kernel("shade_ply");
     next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1)));
     set_args(k, next, scene_.vertices(), scene_.ply_materials(), aov_.cl(), ply_list_.cl(), queue_counts_.cl(), kHits);
   }
-  if (features_.triangles || features_.spheres) {
+  if (kernels_.contains("shade_surface")) {
     auto& k = kernel("shade_surface");
     next = scene_.bind_lights(k, path(k, 1));
     set_args(k, next, scene_.triangles(), scene_.spheres(), scene_.surface_materials(), aov_.cl(), surface_list_.cl(),
@@ -122,9 +113,11 @@ void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
   auto& accumulate = kernel("accumulate");
   set_args(accumulate, 1, camera_);
   set_args(accumulate, 3, radiance_.cl(), film_.cl(), scene_.events());
-  auto& accumulate_aov = kernel("accumulate_aov");
-  set_args(accumulate_aov, 1, camera_);
-  set_args(accumulate_aov, 3, aov_.cl(), aov_film_.cl(), ply_film_.cl());
+  if (features_.aovs) {
+    auto& k = kernel("accumulate_aov");
+    set_args(k, 1, camera_);
+    set_args(k, 3, aov_.cl(), aov_film_.cl(), ply_film_.cl());
+  }
 }
 
 uint32_t Wavefront::padded_pixels() const {

@@ -232,6 +232,20 @@ class Builder {
     register_triangles(first, light.radiance, false, material, tables, "mesh");
   }
 
+  // Photographed skies are resampled with filters that ring: a few texels dip below zero, where no light can be.
+  void darken_negative(std::vector<float>& rgb, const std::filesystem::path& file) {
+    size_t count = 0;
+    float lowest = 0;
+    for (float& v : rgb)
+      if (v < 0) {
+        lowest = std::min(lowest, v);
+        v = 0;
+        ++count;
+      }
+    if (count)
+      world_.notes.push_back(fmt::format("{}: {} negative values (lowest {:.3g}) count as 0", file.string(), count, lowest));
+  }
+
   void add_environment(const LightScene& light, LightTableBuilder& tables) {
     WEnvironment& env = world_.environment;
     Rgb mean = light.radiance;
@@ -250,6 +264,7 @@ class Builder {
       const size_t n = image.channels.size();
       for (size_t i = 0; i < rgb.size() / 3; ++i)
         for (size_t k = 0; k < 3; ++k) rgb[3 * i + k] = image.pixels[i * n + (n >= 3 ? k : 0)] * float(light.radiance[k]);
+      darken_negative(rgb, light.file);
       world_.environment_tables = environment_tables(rgb, image.width, image.height);
       env.width = image.width;
       env.height = image.height;

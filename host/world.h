@@ -33,6 +33,7 @@ struct World {
   WEnvironment environment{};
   EnvironmentTables environment_tables;          ///< empty for a constant environment
   WCamera camera{};
+  std::vector<std::string> notes;                ///< what was mended in the input, one line each
   std::vector<std::string> light_names;          ///< per light, for `wale plan`
   std::map<std::string, double> seconds;         ///< per step of the build
 

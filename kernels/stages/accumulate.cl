@@ -1,7 +1,7 @@
 /* Each pixel's owner adds its slots in the order of samples: the picture does not depend on the pool's size, on queue
    order or on threads. Sample s belongs to scramble s % W_SCRAMBLES; the spread of the scrambles gives the variance. */
+#include "sampling/sobol.clh"
 #include "stages/path_state.clh"
-#define W_SCRAMBLES 8
 
 __kernel void accumulate(WFrame frame, WCamera camera, uint pixels, __global const float4* radiance,
                          __global float4* film, __global uint* events) {
@@ -18,23 +18,5 @@ __kernel void accumulate(WFrame frame, WCamera camera, uint pixels, __global con
       value = (float4)(0.0f, 0.0f, 0.0f, 1.0f);
     }
     out[(frame.samples_before + k) % W_SCRAMBLES] += value;
-  }
-}
-
-/* First-hit features: sums over samples of 4 x float4 per pixel, and the ply of the pixel's first sample. */
-__kernel void accumulate_aov(WFrame frame, WCamera camera, uint pixels, __global const float4* aov,
-                             __global float4* film, __global uint* ply) {
-  const uint g = get_global_id(0);
-  if (g >= pixels) return;
-  int x, y;
-  if (!w_pixel_xy(frame.first_pixel + g, camera.width, camera.height, &x, &y)) return;
-  const ulong pixel = (ulong)((uint)y * (uint)camera.width + (uint)x);
-  for (uint k = 0; k < frame.samples_in_wave; ++k) {
-    __global const float4* in = aov + (ulong)(g * frame.samples_in_wave + k) * 4;
-    if (frame.samples_before + k == 0) ply[pixel] = as_uint(in[3].w);
-    film[pixel * 4] += in[0];
-    film[pixel * 4 + 1] += in[1];
-    film[pixel * 4 + 2] += in[2];
-    film[pixel * 4 + 3] += (float4)(in[3].xyz, 0.0f);
   }
 }

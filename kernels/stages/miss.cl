@@ -3,12 +3,19 @@
 #include "stages/light_args.clh"
 #include "stages/path_state.clh"
 
-__kernel void miss(WFrame frame, W_PATH_PARAMS, W_LIGHT_PARAMS, __global const uint* list, __global const uint* counts,
-                   uint count_index) {
+__kernel void miss(WFrame frame, W_PATH_PARAMS, W_LIGHT_PARAMS, __global float4* aov, __global const uint* list,
+                   __global const uint* counts, uint count_index) {
   const uint i = get_global_id(0);
   if (i >= counts[count_index]) return;
   const uint slot = list[i];
   mask[slot] = 0u;
+#ifdef W_AOVS
+  if (ray_d[slot].w < 0.0f) {  // from the camera: the slot still holds what an earlier wave met
+    __global float4* a = aov + (ulong)slot * 4;
+    a[0] = a[1] = a[2] = (float4)(0.0f);
+    a[3] = (float4)(0.0f, 0.0f, 0.0f, as_float(W_NONE));
+  }
+#endif
 #ifdef W_HAS_ENVIRONMENT
   const WLights lights = W_LIGHTS;
   const float3 d = ray_d[slot].xyz;

@@ -1,5 +1,4 @@
-/* A path meets a ply (KNIT21 section 3.3): choose one lobe of the ply BSDF, connect that lobe to a light, go on along
-   that lobe. A direction on the outer side of the surface leaves at the hit; any other one leaves from the middle of the
+/* A path meets a ply (KNIT21 section 3.3): connect it to a light, go on along a lobe of the ply BSDF. A direction on the outer side of the surface leaves at the hit; any other one leaves from the middle of the
    chord through the ply (docs/appearance.md), and meets whatever lies ahead, its own segment excepted. */
 #include "appearance/ply_bsdf.clh"
 #include "geometry/ply_surface.clh"
@@ -56,7 +55,6 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
   const float4 u = w_sample4(&sampler, W_SET_SCATTER(depth));
   float left;
   const int lobe = w_ply_choose(&shade, u.x, &left);
-  const float3 lobe_weight = weight[slot].xyz * shade.a[lobe] / shade.q[lobe];
 
   const float3 radial = s.x - s.t * dot(s.x, s.t);
   const float3 out = s.x + radial * 9.5367432e-7f;  // 4 * 2^-22 (science of 8.5: beyond the error of the hit)
@@ -69,17 +67,19 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
     // One light sample seen from each of the two places a direction may leave from. Each counts only on its own side;
     // where both do (a thin set), one is taken at random and counts twice.
     const float4 ul = w_sample4(&sampler, W_SET_LIGHT(depth));
-    WLightSample a = w_light_sample(&lights, s.anchor + out, ul);
-    WLightSample b = w_light_sample(&lights, s.anchor + middle, ul);
+    const WLightSample a = w_light_sample(&lights, s.anchor + out, ul);
+    WLightSample b = a;
+    if (a.distance < 1e29f) b = w_light_sample(&lights, s.anchor + middle, ul);  // nearer lights show a parallax
     const int a_ok = a.pdf > 0.0f && dot(a.direction, s.n) > 0.0f;
     const int b_ok = b.pdf > 0.0f && !(dot(b.direction, s.n) > 0.0f);
     if (a_ok || b_ok) {
       const int take_b = a_ok && b_ok ? left < 0.5f : b_ok;
       const WLightSample l = take_b ? b : a;
       const float twice = a_ok && b_ok ? 2.0f : 1.0f;
-      const float p = w_ply_pdf(&shade, lobe, l.direction);
+      float p;
+      const float3 f = w_ply_eval(&shade, l.direction, &p);
       const float share = frame.light_sampling == 0 ? w_mis(l.pdf, p) : 1.0f;
-      const float3 c = lobe_weight * l.radiance * (twice * p * share / l.pdf);
+      const float3 c = weight[slot].xyz * f * l.radiance * (twice * share / l.pdf);
       if (w_max3(c) > 0.0f) {
         bins |= W_BIN_SHADOW;
         shadow_o[slot] = (float4)(s.anchor, as_float(W_NONE));
@@ -92,9 +92,11 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
 #endif
 
   const float3 w = w_ply_sample(&shade, lobe, u.y, u.z, u.w);
-  const float density = w_ply_pdf(&shade, lobe, w);
-  float3 next = lobe_weight;
-  bins |= w_continue(&frame, &next, depth, w_sample4(&sampler, W_SET_ROULETTE(depth)).x);
+  float density;
+  const float3 f = w_ply_eval(&shade, w, &density);
+  // A direction whose density has underflowed was drawn from the far tail of its lobe: the lobe's own weight is exact.
+  float3 next = weight[slot].xyz * (density > 1e-20f ? f / density : shade.a[lobe] / shade.q[lobe]);
+  bins |= w_continue(&frame, &next, depth, &sampler);
   weight[slot] = (float4)(next, 0.0f);
   ray_o[slot] = (float4)(s.anchor, as_float(W_NONE));
   ray_l[slot] = (float4)(w_leave(&s, out, middle, w), as_float(h.code));

@@ -106,7 +106,7 @@ __kernel void shade_surface(WFrame frame, W_PATH_PARAMS, W_LIGHT_PARAMS, __globa
     float pdf;
     float3 next = weight[slot].xyz * w_surface_sample(m, n, wv, u.x, u.y, u.z, &w, &pdf);
     if (pdf > 0.0f && dot(w, n_geo) > 0.0f) {
-      bins |= w_continue(&frame, &next, depth, w_sample4(&sampler, W_SET_ROULETTE(depth)).x);
+      bins |= w_continue(&frame, &next, depth, &sampler);
       weight[slot] = (float4)(next, 0.0f);
       ray_o[slot] = (float4)(p, as_float(skip_triangle));
       ray_l[slot] = (float4)(lift, as_float(W_NONE));

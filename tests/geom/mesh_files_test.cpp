@@ -130,7 +130,8 @@ TEST_F(MeshFiles, UnknownSuffix) {
 
 TEST_F(MeshFiles, NotAMesh) {
   for (const char* name : {"x.obj", "x.ply", "x.off"}) {
-    const auto file = write(name, std::string("\x89PNG\r\n\x1a\n\0\0 binary rubbish \xff\xfe", 32));
+    const char rubbish[] = "\x89PNG\r\n\x1a\n\0\0 binary rubbish \xff\xfe";
+    const auto file = write(name, std::string(rubbish, sizeof rubbish));
     expect_contains(message([&] { read_mesh(file); }), "not a mesh");
   }
 }
@@ -148,6 +149,31 @@ TEST_F(MeshFiles, TruncatedPly) {
             "ply\nformat binary_little_endian 1.0\nelement vertex 1000000\nproperty float x\nproperty float y\n"
             "property float z\nelement face 1000000\nproperty list uchar int vertex_indices\nend_header\nabc");
   EXPECT_THROW(read_mesh(file), Error);
+}
+
+// OpenMesh reads stale numbers, or loops for minutes, where a text file ends early.
+TEST_F(MeshFiles, TextPlyThatEndsEarly) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+  EXPECT_EQ(read_mesh(write("whole.ply", head + "3 0 1 2\n")).triangle.size(), 1u);
+  expect_contains(message([&] { read_mesh(write("a.ply", head)); }), "a.ply:12: the file ends before face 1 of the 1");
+  expect_contains(message([&] { read_mesh(write("b.ply", head + "3 0\n")); }),
+                  "b.ply:13: face of 3 numbers has only 1");
+  expect_contains(message([&] { read_mesh(write("c.ply", head + "2000000000 0 1 2\n")); }), "has only 3");
+}
+
+TEST_F(MeshFiles, OffThatEndsEarly) {
+  const std::string points = "0 0 0\n1 0 0\n0 1 0\n";
+  EXPECT_EQ(read_mesh(write("whole.off", "OFF\n3 1 0\n" + points + "3 0 1 2\n")).triangle.size(), 1u);
+  expect_contains(message([&] { read_mesh(write("e.off", "OFF 3 1 0\n" + points + "3 0 1 2\n")); }),
+                  "line of their own");
+  expect_contains(message([&] { read_mesh(write("a.off", "OFF\n2000000000 1 0\n0 0 0\n")); }), "before vertex 2 of");
+  expect_contains(message([&] { read_mesh(write("b.off", "OFF\n3 2000000000 0\n" + points + "3 0 1 2\n")); }),
+                  "before face 2 of");
+  expect_contains(message([&] { read_mesh(write("c.off", "OFF\n3 1 0\n" + points + "2000000000 0 1 2\n")); }),
+                  "c.off:6: a face of 2000000000 numbers has only 3");
+  expect_contains(message([&] { read_mesh(write("d.off", "OFF BINARY\n3 1 0\n")); }), "binary OFF");
 }
 
 TEST_F(MeshFiles, FaceNamesMissingVertex) {

@@ -140,7 +140,7 @@ TEST(Stockinette, RowsTouchAndNothingInterpenetrates) {
   EXPECT_EQ(tile.stitches, ivec2(1, 1));
   const double scale = width / (2 * M_PI);
   const auto loop = [&](double t) {
-    return scale * dvec3(t + 1.5 * std::sin(2 * t), 4 * std::cos(t), -std::cos(2 * t));
+    return scale * dvec3(t + 1.5 * std::sin(2 * t), 3 * std::cos(t), -1.1 * std::cos(2 * t));
   };
   const YarnSpline spline = spline_of(tile);
   double rows = 1, own = 1;

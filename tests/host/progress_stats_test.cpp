@@ -41,6 +41,17 @@ TEST(Progress, PlainLinesAboutEveryTenPercent) {
   EXPECT_EQ(lines[9].substr(0, 18), "knit 100 %  done  ");
 }
 
+TEST(Progress, PlainLineSoonWhereATenthTakesLong) {
+  const auto lines = progress_lines(false, [](Progress& p) {
+    p.update(0.001);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    p.update(0.002);
+    p.update(0.003);
+  });
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_EQ(lines[0], "knit   0 %");
+}
+
 TEST(Progress, QuietSaysNothing) {
   EXPECT_TRUE(progress_lines(true, [](Progress& p) { p.update(0.5), p.finish(); }).empty());
 }

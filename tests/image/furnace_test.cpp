@@ -52,10 +52,10 @@ TEST_P(WhiteFurnace, EveryPixelIsOneThreeTimes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, WhiteFurnace,
-                         testing::Values(Case{"OnePlyMis", one_ply, "mis", 128}, Case{"OnePlyLight", one_ply, "light", 512},
+                         testing::Values(Case{"OnePlyMis", one_ply, "mis", 128}, Case{"OnePlyLight", one_ply, "light", 2048},
                                          Case{"OnePlyBsdf", one_ply, "bsdf", 64},
                                          Case{"YarnMis", three_ply_yarn, "mis", 128},
-                                         Case{"YarnLight", three_ply_yarn, "light", 512},
+                                         Case{"YarnLight", three_ply_yarn, "light", 2048},
                                          Case{"YarnBsdf", three_ply_yarn, "bsdf", 64},
                                          Case{"SwatchMis", swatch, "mis", 128}, Case{"SwatchLight", swatch, "light", 1024},
                                          Case{"SwatchBsdf", swatch, "bsdf", 64}),

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include "geom/base_mesh.h"
+#include "host/image.h"
+
 
 namespace wale::test {
 
@@ -15,7 +18,8 @@ const Device& device() {
 }
 
 Picture take_on(const Device& dev, const Scene& scene, int spp, unsigned seed, uint32_t pool, bool aovs) {
-  const World world = build_world(scene, Loaders{});
+  const World world = build_world(scene, Loaders{[](const auto& file) { return read_mesh(file); },
+                                              [](const auto& file) { return read_image(file, true); }});
   const SceneDevice on_device(dev, world, local_stage(scene.integrator));
   IntegratorScene integrator = scene.integrator;
   integrator.seed = seed;

@@ -54,10 +54,17 @@ TEST_P(PlyBsdf, AgreesWithOracle) {
     std::vector<float> views;
     for (size_t i = 0; i < kCount; ++i) views.insert(views.end(), &in[12 * i], &in[12 * i] + 9);
     const auto energies = runner.run("energies", kCount, 15, m, runner.upload(views));
-    double worst_pdf = 0, worst_energy = 0;
+    const auto together = runner.run("evaluate", kCount, 4, m, runner.upload(in));
+    double worst_pdf = 0, worst_energy = 0, worst_sum = 0;
     for (size_t i = 0; i < kCount; ++i) {
       const float* p = &in[12 * i];
       const PlyOracle oracle(material, unit(p), unit(p + 3), unit(p + 6));
+      for (int k = 0; k < 4; ++k) {
+        double sum = 0;
+        for (int lobe = 0; lobe < 3; ++lobe)
+          sum += (k < 3 ? oracle.energy[lobe][k] : energies[15 * i + 9 + lobe]) * oracle.pdf(lobe, unit(p + 9));
+        worst_sum = std::max(worst_sum, std::abs(together[4 * i + k] - sum) / (sum + 1e-3));
+      }
       for (int lobe = 0; lobe < 3; ++lobe) {
         // Far tails are compared against a floor: they are exponentials of large numbers.
         const double exact = oracle.pdf(lobe, unit(p + 9));
@@ -67,6 +74,7 @@ TEST_P(PlyBsdf, AgreesWithOracle) {
       }
     }
     EXPECT_LT(worst_pdf, bound) << name;
+    EXPECT_LT(worst_sum, 2 * bound) << name;  // a product of two rounded numbers
     EXPECT_LT(worst_energy, GetParam() ? tolerance::kEnergyDouble : tolerance::kFurnace) << name;
     RecordProperty("worst_pdf_" + name, std::to_string(worst_pdf));
   }

@@ -33,6 +33,15 @@ __kernel void densities(__global const WPlyMaterial* m, __global const float* in
   const WPlyShade s = shade_of(m, in + 12 * i);
   for (int k = 0; k < 3; ++k) out[3 * i + k] = w_ply_pdf(&s, k, normalize(vec(in + 12 * i + 9)));
 }
+/* All lobes together: bsdf * cosine rgb, density. */
+__kernel void evaluate(__global const WPlyMaterial* m, __global const float* in, __global w_real* out, uint count) {
+  const uint i = get_global_id(0);
+  if (i >= count) return;
+  const WPlyShade s = shade_of(m, in + 12 * i);
+  w_real pdf;
+  vstore3(w_ply_eval(&s, normalize(vec(in + 12 * i + 9)), &pdf), 0, out + 4 * i);
+  out[4 * i + 3] = pdf;
+}
 /* Density of one lobe on an n x n grid of (w.z, azimuth about z) for one configuration. */
 __kernel void density_grid(__global const WPlyMaterial* m, __global const float* in, int lobe, uint n,
                            __global w_real* out, uint count) {

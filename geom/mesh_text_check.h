@@ -1,0 +1,13 @@
+#pragma once
+#include <string>
+
+namespace wale {
+
+/// OpenMesh's readers of text files run past the end without noticing: stale numbers become corners, and a face that
+/// claims two thousand million corners never ends. These look over a text PLY or OFF first and throw a user error
+/// file:line where an element is missing or its line holds too few numbers. A binary PLY passes (its reader notices);
+/// a binary OFF is refused.
+void require_whole_ply(const std::string& text, const std::string& file);
+void require_whole_off(const std::string& text, const std::string& file);
+
+}  // namespace wale

@@ -1,0 +1,20 @@
+#include "host/stages.h"
+
+namespace wale {
+
+std::vector<Stage> wavefront_stages(const Features& f) {
+  const bool surfaces = f.triangles || f.spheres;
+  return {
+      {"stages/generate.cl", {"generate"}, true, "camera rays"},
+      {"stages/intersect.cl", {"intersect"}, true, "nearest hits"},
+      {"stages/compact.cl", {"compact_count", "compact_scan", "compact_scatter"}, true, "queues"},
+      {"stages/miss.cl", {"miss"}, true, f.environment ? "paths that leave gather the environment" : "paths that leave end"},
+      {"stages/shade_ply.cl", {"shade_ply"}, f.plies, f.plies ? "plies" : "no fabric in the scene"},
+      {"stages/shade_surface.cl", {"shade_surface"}, surfaces, surfaces ? "props, ground or visible lights" : "no props"},
+      {"stages/connect.cl", {"connect"}, f.lights, f.lights ? "shadow rays" : "nothing is sampled"},
+      {"stages/accumulate.cl", {"accumulate"}, true, "pixel sums"},
+      {"stages/accumulate_aov.cl", {"accumulate_aov"}, f.aovs, f.aovs ? "feature images" : "no .exr is written"},
+  };
+}
+
+}  // namespace wale

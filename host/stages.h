@@ -1,0 +1,20 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "host/features.h"
+
+namespace wale {
+
+/// A stage of the wavefront: one kernel file, its kernels, and whether a scene's features ask for it.
+struct Stage {
+  std::string file;  ///< below kernels/
+  std::vector<std::string> kernels;
+  bool used = true;
+  std::string because;
+};
+
+/// All stages in the order of a bounce; those that are not used are neither compiled nor launched.
+std::vector<Stage> wavefront_stages(const Features& features);
+
+}  // namespace wale

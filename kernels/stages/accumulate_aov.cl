@@ -1,0 +1,20 @@
+#include "stages/path_state.clh"
+
+/* First-hit features: sums over samples of 4 x float4 per pixel, the last w counts the samples that met something;
+   and the ply of the pixel's first sample. */
+__kernel void accumulate_aov(WFrame frame, WCamera camera, uint pixels, __global const float4* aov,
+                             __global float4* film, __global uint* ply) {
+  const uint g = get_global_id(0);
+  if (g >= pixels) return;
+  int x, y;
+  if (!w_pixel_xy(frame.first_pixel + g, camera.width, camera.height, &x, &y)) return;
+  const ulong pixel = (ulong)((uint)y * (uint)camera.width + (uint)x);
+  for (uint k = 0; k < frame.samples_in_wave; ++k) {
+    __global const float4* in = aov + (ulong)(g * frame.samples_in_wave + k) * 4;
+    if (frame.samples_before + k == 0) ply[pixel] = as_uint(in[3].w);
+    film[pixel * 4] += in[0];
+    film[pixel * 4 + 1] += in[1];
+    film[pixel * 4 + 2] += in[2];
+    film[pixel * 4 + 3] += (float4)(in[3].xyz, in[0].w > 0.0f ? 1.0f : 0.0f);
+  }
+}
