@@ -25,11 +25,12 @@ BaseMesh swatch(double size) { return make_swatch(size, size, 4, 4); }
 BaseMesh tube(double size) { return make_tube(size / 6, size, 48, 8); }
 BaseMesh draped(double size) { return make_draped_square(size, size / 4, 32); }
 
-const Cloth kThree[] = {{"swatch, 3 plies", 3, swatch}, {"tube, 3 plies", 3, tube}, {"draped square, 3 plies", 3, draped}};
+const Cloth kThree[] = {
+    {"swatch, 3 plies", 3, swatch}, {"tube, 3 plies", 3, tube}, {"draped square, 3 plies", 3, draped}};
 const Cloth kOthers[] = {{"tube, 2 plies", 2, tube}, {"draped square, 5 plies", 5, draped}};
 
-/// Stockinette with stitches 2 mm wide on a cloth just large enough for about that many segments (a coarser polyline where
-/// the cloth would have no four stitches).
+/// Stockinette with stitches 2 mm wide on a cloth just large enough for about that many segments (a coarser polyline
+/// where the cloth would have no four stitches).
 Fabric knit(const Cloth& cloth, double segments) {
   FabricSpec spec;
   spec.name = cloth.name;
@@ -67,7 +68,8 @@ struct Tally {
 
 // Where float and double may part:
 // - |h| so near 1 that the rounding of float coordinates decides, or an entry on the very edge of a joint;
-// - the same segment, but at an angle so flat that the rounding of coordinates, 2^-23 of the distance, becomes more than
+// - the same segment, but at an angle so flat that the rounding of coordinates, 2^-23 of the distance, becomes more
+// than
 //   1e-3 r along the ray: dt = dh h / sqrt(1 - h^2).
 // Each such ray is printed and none is left out of the count.
 void compare(Tally& tally, const Cloth& cloth, const Fabric& fabric, const FabricTracer& tracer,
@@ -89,13 +91,14 @@ void compare(Tally& tally, const Cloth& cloth, const Fabric& fabric, const Fabri
         !same && (std::max(hit ? std::abs(hits[i].u) : 0.0f, e.hit ? float(std::abs(e.h)) : 0.0f) > 0.999f ||
                   (e.hit && e.edge < 1e-3));
     ++(rounded ? tally.rounded : grazes ? tally.grazing : tally.wrong);
-    fmt::print("  {}, {} ray {}: device {} t {:.9g} h {:.6f} piece {} segment {}, double {} t {:.9g} h {:.6f} piece {} "
-               "segment {} edge {:.3g} r, |dt| {:.3g} r: {}\n",
-               cloth.name, rays[i].skip == W_NONE ? "primary" : "bounce", i, hit ? "hit" : "miss", hits[i].t, hits[i].u,
-               hits[i].v, segment, e.hit ? "hit" : "miss", e.t, e.h, e.piece, e.segment, e.edge, dt,
-               rounded  ? "rounded"
-               : grazes ? "grazing"
-                        : "wrong");
+    fmt::print(
+        "  {}, {} ray {}: device {} t {:.9g} h {:.6f} piece {} segment {}, double {} t {:.9g} h {:.6f} piece {} "
+        "segment {} edge {:.3g} r, |dt| {:.3g} r: {}\n",
+        cloth.name, rays[i].skip == W_NONE ? "primary" : "bounce", i, hit ? "hit" : "miss", hits[i].t, hits[i].u,
+        hits[i].v, segment, e.hit ? "hit" : "miss", e.t, e.h, e.piece, e.segment, e.edge, dt,
+        rounded  ? "rounded"
+        : grazes ? "grazing"
+                 : "wrong");
   }
 }
 
@@ -115,8 +118,9 @@ void check(const Cloth& cloth, double segments, size_t rays, double most_rounded
   Tally tally;
   compare(tally, cloth, fabric, tracer, primary, first, brute_force(oracle, tracer, primary));
   compare(tally, cloth, fabric, tracer, bounce, tracer.trace(bounce), brute_force(oracle, tracer, bounce));
-  fmt::print("| {} | {} | {} | {} | {:.1f} % | {} | {} | {} | {:.2g} |\n", cloth.name, oracle.segments(), primary.size(),
-             bounce.size(), 100.0 * double(tally.hits) / double(tally.rays), tally.grazing, tally.rounded, tally.wrong, tally.worst);
+  fmt::print("| {} | {} | {} | {} | {:.1f} % | {} | {} | {} | {:.2g} |\n", cloth.name, oracle.segments(),
+             primary.size(), bounce.size(), 100.0 * double(tally.hits) / double(tally.rays), tally.grazing,
+             tally.rounded, tally.wrong, tally.worst);
   EXPECT_GT(bounce.size(), rays / 5) << cloth.name;
   EXPECT_EQ(tally.wrong, 0u) << cloth.name;
   EXPECT_LE(double(tally.grazing), 1e-5 * double(tally.rays)) << cloth.name;
@@ -125,7 +129,8 @@ void check(const Cloth& cloth, double segments, size_t rays, double most_rounded
 }
 
 constexpr const char* kHeader =
-    "| fabric | segments | primary | bounce | hit | grazing | rounded | wrong | worst other dt / r |\n|---|---|---|---|---|---|---|---|---|\n";
+    "| fabric | segments | primary | bounce | hit | grazing | rounded | wrong | worst other dt / r "
+    "|\n|---|---|---|---|---|---|---|---|---|\n";
 
 TEST(Exact, AgreesWithBruteForceOnKnittedFabrics) {
   fmt::print("{}", kHeader);
@@ -139,8 +144,8 @@ TEST(Exact, AgreesWithBruteForceOnLargeFabrics) {
   fmt::print("{}", kHeader);
   for (const Cloth& cloth : kThree) check(cloth, 20000, 1000000);
   for (const Cloth& cloth : kOthers) check(cloth, 20000, 1000000);
-  // 170 mm of cloth with plies of 0.1 mm: a float at that distance is 1.4e-4 r wide, so that flat angles are rounded more
-  // often, by 3e-3 r at most.
+  // 170 mm of cloth with plies of 0.1 mm: a float at that distance is 1.4e-4 r wide, so that flat angles are rounded
+  // more often, by 3e-3 r at most.
   for (const Cloth& cloth : kThree) check(cloth, 1e6, 100000, 5e-4);
 }
 
