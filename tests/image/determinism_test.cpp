@@ -30,11 +30,12 @@ TEST(Determinism, TwoRunsGiveTheSameBytes) {
   EXPECT_EQ(different_pixels(a.image, b.image), 0u);
   EXPECT_EQ(a.counts.bounce, b.counts.bounce);
   EXPECT_EQ(a.counts.shadow, b.counts.shadow);
-  // The comparison sees something: another seed is another picture nearly everywhere.
+  // The comparison sees something: another seed is another picture nearly everywhere but in the sky.
   const Picture other = take(scene, kSamples, 4, 0, true);
   const size_t pixels = size_t(a.image.width) * a.image.height;
   EXPECT_GT(coloured(a.image), pixels / 2);
-  EXPECT_GT(different_pixels(a.image, other.image), pixels * 9 / 10);
+  EXPECT_GT(different_pixels(a.image, other.image), coloured(a.image) * 9 / 10);
+  EXPECT_LT(coloured(a.image), pixels) << "some pixels meet nothing";
 }
 
 TEST(Determinism, EveryPoolGivesTheSameBytes) {

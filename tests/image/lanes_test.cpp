@@ -1,6 +1,8 @@
 // The same picture from every width of the explicit vectors, and from another OpenCL driver.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/host/temporary_folder.h"
 #include "tests/image/picture.h"
 #include "tests/image/program.h"
@@ -59,8 +61,31 @@ TEST(Drivers, OclgrindGivesTheSamePicture) {
                         folder / "log.txt"),
             0)
       << file_text(folder / "log.txt");
-  const Picture expected = take(read_scene(scene, {shorter, coarser}), 256, 2);
-  expect_same_mean(expected.image, read_image(picture), "Oclgrind");
+  const Image image = read_image(picture);
+  const Scene same_scene = read_scene(scene, {shorter, coarser});
+
+  // The same seed, hence the same paths: what is left is the rounding of another compiler's code.
+  const Image same = take(same_scene, 8, 1).image;
+  ASSERT_EQ(image.width, same.width);
+  int differ = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (int c = 0; c < 3; ++c)
+        differ += std::abs(image.at(x, y)[c] - same.at(x, y)[c]) > 1e-4f * (1 + same.at(x, y)[c]);
+  EXPECT_LE(differ, 3) << "channels of " << image.width * image.height << " pixels";
+
+  // Another seed: the same mean. Of the whole picture, since the spread of eight samples says little about the error of
+  // one pixel at a silhouette.
+  const Image other = take(same_scene, 256, 2).image;
+  const auto mean = mean_rgb(image), expected = mean_rgb(other);
+  for (size_t c = 0; c < 3; ++c) {
+    double variance = 0;
+    for (const Image* i : {&image, &other})
+      for (int y = 0; y < i->height; ++y)
+        for (int x = 0; x < i->width; ++x) variance += i->at(x, y)[3 + c] / std::pow(double(i->width) * i->height, 2);
+    const double z = (mean[c] - expected[c]) / std::sqrt(variance);
+    EXPECT_GT(std::erfc(std::abs(z) / std::sqrt(2.0)), sidak(0.01, 3)) << "channel " << c;
+  }
 }
 
 }  // namespace
