@@ -83,7 +83,7 @@ __kernel void shade_surface(WFrame frame, W_PATH_PARAMS, W_LIGHT_PARAMS, __globa
   const float3 wv = -d;
 
   uint bins = 0u;
-  if (w_max3(m.color.xyz) > 0.0f || m.kind != 0) {
+  if (!w_last_ray(&frame, depth) && (w_max3(m.color.xyz) > 0.0f || m.kind != 0)) {
 #ifdef W_HAS_LIGHTS
     if (frame.light_sampling != 2) {
       const WLightSample l = w_light_sample(&lights, p, w_sample4(&sampler, W_SET_LIGHT(depth)));
