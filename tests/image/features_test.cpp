@@ -59,13 +59,13 @@ TEST(Features, PlacesAreOfTheWorldAndAbsentInTheBackground) {
 
 // A scene without a camera shows all of its cloth, in a picture of any shape.
 TEST(Features, FramingKeepsTheClothInside) {
-  for (const auto& [width, height] : {std::pair(16, 48), std::pair(48, 16)}) {
+  for (const auto& [width, height] : {std::pair(24, 72), std::pair(72, 24)}) {
     Scene scene = empty_scene(0.01, 16);
     scene.camera_given = false;
     scene.camera.orthographic = false;
     scene.film.width = width;
     scene.film.height = height;
-    add_fabric(scene, straight_yarn(0.002, 0.0007), 0.01, 0.01, 1, "wool", Rgb{1, 1, 1});
+    add_fabric(scene, straight_yarn(0.004, 0.0015), 0.08, 0.08, 1, "wool", Rgb{1, 1, 1});
     const Image image = take(scene, 8, 1, 0, true).image;
     const size_t depth = channel(image, "depth.Z");
     size_t cloth = 0;
