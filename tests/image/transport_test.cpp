@@ -104,6 +104,22 @@ TEST(Transport, RaysOfPaddedPixelsAreNotCounted) {
   EXPECT_EQ(take(scene, 3).counts.primary, 7u * 5u * 3u);
 }
 
+// A ball as large as a floor: what lies closer to it than a share of its radius is not lost.
+TEST(Transport, HugeSphereSeenFromNearby) {
+  Scene scene = empty_scene(1e-3, 8);
+  scene.materials.push_back({});
+  scene.materials[0].surface.color = {0.7, 0.7, 0.7};
+  ObjectScene ball;
+  ball.kind = ObjectScene::Kind::sphere;
+  ball.center = dvec3(0, 0, -100);
+  ball.radius = 100;
+  scene.objects.push_back(ball);
+  scene.camera.position = dvec3(0, 0, 5e-4);
+  scene.camera.look_at = dvec3(0, 0, 0);
+  scene.lights.push_back(constant_environment(1));
+  for (const double mean : mean_rgb(take(scene, 256).image)) EXPECT_NEAR(mean, 0.7, 0.005);
+}
+
 TEST(Transport, DiffuseSphereInAFurnace) {
   // Albedo a in a constant environment: a convex body shows exactly a.
   Scene scene = empty_scene(1, 24);
