@@ -32,7 +32,7 @@ std::string everything_scene(int size, double wales) {
   "fabrics": [{{"name": "cloth", "mesh": {{"generator": "draped_square", "size": 30, "sphere_radius": 8, "nu": 16}},
                "pattern": {{"builtin": "stockinette"}}, "gauge": {{"wales": {1}}}, "yarn": {{"plies": 3}},
                "material": "yarn"}}],
-  "objects": [{{"type": "ground", "up": [0, 0, 1], "height": -12, "extent": 500, "material": "floor"}}],
+  "objects": [{{"type": "ground", "up": [0, 0, 1], "height": -12, "extent": 18, "material": "floor"}}],
   "lights": [{{"type": "sphere", "position": [-30, -20, 40], "radius": 5, "radiance": 40}},
              {{"type": "environment", "radiance": [0.5, 0.6, 0.8], "up": [0, 0, 1]}}]
 }})",

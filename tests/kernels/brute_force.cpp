@@ -110,7 +110,7 @@ OracleHit BruteForce::closest(const Ray& ray, long skip) const {
     if (!meets(x_[i], y_[i], z_[i], reach_[i]) || long(segments_[i].id) == skip) continue;
     const Segment& s = segments_[i];
     const double r = s.radius, eps = 1e-5 * r;
-    double t = 1e30, h = 0;
+    double t = 1e30, h = 0, edge = 1e30;
     int piece = -1;
     const auto take = [&](double t_new, double h_new, int piece_new) {
       if (t_new > 0 && t_new < t) {
@@ -137,6 +137,9 @@ OracleHit BruteForce::closest(const Ray& ray, long skip) const {
         ok = ok && (s.cut_end ? glm::dot(y2, a) <= eps && !inside_cylinder(y2, s.after - s.end, r * r)
                               : glm::dot(y2, a + t_after) <= 2 * eps);
         if (ok) take(t0, l / r, 0);
+        if (piece == 0)
+          edge = std::min(s.cut_start ? glm::dot(y1, a) : glm::dot(y1, unit(t_before + a)),
+                          s.cut_end ? -glm::dot(y2, a) : -glm::dot(y2, unit(a + t_after))) / r;
       }
     }
     const auto sphere = [&](dvec3 centre, dvec3 ea, dvec3 eb, int which) {
@@ -166,6 +169,7 @@ OracleHit BruteForce::closest(const Ray& ray, long skip) const {
     best.segment = s.id;
     best.piece = piece;
     best.h = h;
+    best.edge = piece == 0 ? std::abs(edge) : 1e30;
   }
   return best;
 }

@@ -23,6 +23,7 @@ struct OracleHit {
   uint32_t segment = 0;  ///< vertex id of its start
   int piece = 0;
   double h = 0;
+  double edge = 1e30;  ///< distance of an entry through the side from the nearer plane that ends it, in radii
 };
 
 class BruteForce {

@@ -25,11 +25,12 @@ BaseMesh swatch(double size) { return make_swatch(size, size, 4, 4); }
 BaseMesh tube(double size) { return make_tube(size / 6, size, 48, 8); }
 BaseMesh draped(double size) { return make_draped_square(size, size / 4, 32); }
 
-const Cloth kThree[] = {{"swatch, 3 plies", 3, swatch}, {"tube, 3 plies", 3, tube}, {"draped square, 3 plies", 3, draped}};
+const Cloth kThree[] = {
+    {"swatch, 3 plies", 3, swatch}, {"tube, 3 plies", 3, tube}, {"draped square, 3 plies", 3, draped}};
 const Cloth kOthers[] = {{"tube, 2 plies", 2, tube}, {"draped square, 5 plies", 5, draped}};
 
-/// Stockinette with stitches 2 mm wide on a cloth just large enough for about that many segments (a coarser polyline where
-/// the cloth would have no four stitches).
+/// Stockinette with stitches 2 mm wide on a cloth just large enough for about that many segments (a coarser polyline
+/// where the cloth would have no four stitches).
 Fabric knit(const Cloth& cloth, double segments) {
   FabricSpec spec;
   spec.name = cloth.name;
@@ -58,34 +59,50 @@ std::vector<OracleHit> brute_force(const BruteForce& oracle, const FabricTracer&
 }
 
 struct Tally {
-  size_t rays = 0, hits = 0, grazing = 0, wrong = 0;
-  double worst = 0;  ///< |dt| / r of the hits that agree
+  size_t rays = 0, hits = 0;
+  size_t grazing = 0;  ///< hit against miss, or another segment, where the ray only grazes one of them
+  size_t rounded = 0;  ///< same segment, t apart by more than 1e-3 r, the lines' offsets equal but for rounding
+  size_t wrong = 0;    ///< everything else
+  double worst = 0;    ///< |dt| / r of the hits that agree
 };
 
-// Float and double may part where a ray grazes: |h| of either hit so near 1 that the rounding of float coordinates
-// decides, or an entry on the very edge of a joint. Each such ray is printed and none is left out of the count.
+// Where float and double may part:
+// - |h| so near 1 that the rounding of float coordinates decides, or an entry on the very edge of a joint;
+// - the same segment, but at an angle so flat that the rounding of coordinates, 2^-23 of the distance, becomes more
+// than
+//   1e-3 r along the ray: dt = dh h / sqrt(1 - h^2).
+// Each such ray is printed and none is left out of the count.
 void compare(Tally& tally, const Cloth& cloth, const Fabric& fabric, const FabricTracer& tracer,
              const std::vector<Ray>& rays, const std::vector<Hit>& hits, const std::vector<OracleHit>& expected) {
+  const double r = fabric.ply_radius;
   for (size_t i = 0; i < rays.size(); ++i, ++tally.rays) {
+    const OracleHit& e = expected[i];
     const bool hit = hits[i].kind == W_HIT_PLY;
     tally.hits += hit;
-    const double dt = hit && expected[i].hit ? std::abs(hits[i].t - expected[i].t) / fabric.ply_radius : 0;
-    if (hit == expected[i].hit && dt <= 1e-3 && hit == (hits[i].occluded != 0)) {
+    const double dt = hit && e.hit ? std::abs(hits[i].t - e.t) / r : 0;
+    if (hit == e.hit && dt <= 1e-3 && hit == (hits[i].occluded != 0)) {
       tally.worst = std::max(tally.worst, dt);
       continue;
     }
-    const double h = hit ? std::abs(hits[i].u) : 0, oracle_h = expected[i].hit ? std::abs(expected[i].h) : 0;
-    const bool grazes = std::max(h, oracle_h) > 0.999;
-    ++(grazes ? tally.grazing : tally.wrong);
-    fmt::print("  {}, {} ray {}: device {} t {:.9g} h {:.6f} piece {} segment {}, double {} t {:.9g} h {:.6f} piece {} "
-               "segment {}, |dt| {:.3g} r{}\n",
-               cloth.name, rays[i].skip == W_NONE ? "primary" : "bounce", i, hit ? "hit" : "miss", hits[i].t, hits[i].u,
-               hits[i].v, hit ? tracer.segment(hits[i].code) : 0, expected[i].hit ? "hit" : "miss", expected[i].t,
-               expected[i].h, expected[i].piece, expected[i].segment, dt, grazes ? ", grazing" : "");
+    const uint32_t segment = hit ? tracer.segment(hits[i].code) : W_NONE;
+    const bool same = hit && e.hit && segment == e.segment;
+    const bool rounded = same && std::abs(hits[i].u - e.h) <= std::ldexp(e.t / r, -23) && dt < 1e-2;
+    const bool grazes =
+        !same && (std::max(hit ? std::abs(hits[i].u) : 0.0f, e.hit ? float(std::abs(e.h)) : 0.0f) > 0.999f ||
+                  (e.hit && e.edge < 1e-3));
+    ++(rounded ? tally.rounded : grazes ? tally.grazing : tally.wrong);
+    fmt::print(
+        "  {}, {} ray {}: device {} t {:.9g} h {:.6f} piece {} segment {}, double {} t {:.9g} h {:.6f} piece {} "
+        "segment {} edge {:.3g} r, |dt| {:.3g} r: {}\n",
+        cloth.name, rays[i].skip == W_NONE ? "primary" : "bounce", i, hit ? "hit" : "miss", hits[i].t, hits[i].u,
+        hits[i].v, segment, e.hit ? "hit" : "miss", e.t, e.h, e.piece, e.segment, e.edge, dt,
+        rounded  ? "rounded"
+        : grazes ? "grazing"
+                 : "wrong");
   }
 }
 
-void check(const Cloth& cloth, double segments, size_t rays) {
+void check(const Cloth& cloth, double segments, size_t rays, double most_rounded = 1e-5) {
   const Fabric fabric = knit(cloth, segments);
   const FabricTracer tracer(test_device(), fabric);
   const BruteForce oracle(patches_of(fabric, -1), tracer.vertices());
@@ -101,16 +118,19 @@ void check(const Cloth& cloth, double segments, size_t rays) {
   Tally tally;
   compare(tally, cloth, fabric, tracer, primary, first, brute_force(oracle, tracer, primary));
   compare(tally, cloth, fabric, tracer, bounce, tracer.trace(bounce), brute_force(oracle, tracer, bounce));
-  fmt::print("| {} | {} | {} | {} | {:.1f} % | {} | {} | {:.2g} |\n", cloth.name, oracle.segments(), primary.size(),
-             bounce.size(), 100.0 * double(tally.hits) / double(tally.rays), tally.grazing, tally.wrong, tally.worst);
+  fmt::print("| {} | {} | {} | {} | {:.1f} % | {} | {} | {} | {:.2g} |\n", cloth.name, oracle.segments(),
+             primary.size(), bounce.size(), 100.0 * double(tally.hits) / double(tally.rays), tally.grazing,
+             tally.rounded, tally.wrong, tally.worst);
   EXPECT_GT(bounce.size(), rays / 5) << cloth.name;
   EXPECT_EQ(tally.wrong, 0u) << cloth.name;
   EXPECT_LE(double(tally.grazing), 1e-5 * double(tally.rays)) << cloth.name;
+  EXPECT_LE(double(tally.rounded), most_rounded * double(tally.rays)) << cloth.name;
   EXPECT_EQ(tracer.stack_overflows(), 0u);
 }
 
 constexpr const char* kHeader =
-    "| fabric | segments | primary | bounce | hit | grazing | wrong | worst other dt / r |\n|---|---|---|---|---|---|---|---|\n";
+    "| fabric | segments | primary | bounce | hit | grazing | rounded | wrong | worst other dt / r "
+    "|\n|---|---|---|---|---|---|---|---|---|\n";
 
 TEST(Exact, AgreesWithBruteForceOnKnittedFabrics) {
   fmt::print("{}", kHeader);
@@ -124,7 +144,9 @@ TEST(Exact, AgreesWithBruteForceOnLargeFabrics) {
   fmt::print("{}", kHeader);
   for (const Cloth& cloth : kThree) check(cloth, 20000, 1000000);
   for (const Cloth& cloth : kOthers) check(cloth, 20000, 1000000);
-  for (const Cloth& cloth : kThree) check(cloth, 1e6, 10000);
+  // 170 mm of cloth with plies of 0.1 mm: a float at that distance is 1.4e-4 r wide, so that flat angles are rounded
+  // more often, by 3e-3 r at most.
+  for (const Cloth& cloth : kThree) check(cloth, 1e6, 100000, 5e-4);
 }
 
 }  // namespace
