@@ -18,8 +18,10 @@ constexpr double kTwoPi = 2 * std::numbers::pi;
 
 dvec3 loop(double t) { return {t + kRound * std::sin(2 * t), kHeight * std::cos(t), -kDepth * std::cos(2 * t)}; }
 
-/// Smallest distance between the yarns of neighbouring rows: a grid over both parameters, refined about its best point.
-double row_distance() {
+/// Smallest distance between the loop and itself `rows` further up: a grid over both parameters, refined about its best
+/// point. Within one row, points less than kNeck apart along the loop are neighbours, not contacts.
+double closest(int rows) {
+  constexpr double kNeck = 1.5;
   double best = INFINITY, best_s = 0, best_t = 0;
   double centre_s = 0, centre_t = 0, half = kTwoPi;
   for (int round = 0; round < 12; ++round, half /= 8) {
@@ -27,7 +29,8 @@ double row_distance() {
     for (int i = -kSteps; i <= kSteps; ++i)
       for (int j = -kSteps; j <= kSteps; ++j) {
         const double s = centre_s + half * i / kSteps, t = centre_t + half * j / kSteps;
-        const double distance = glm::distance(loop(s), loop(t) + dvec3(0, kRow, 0));
+        if (rows == 0 && std::abs(s - t) < kNeck) continue;
+        const double distance = glm::distance(loop(s), loop(t) + dvec3(0, rows * kRow, 0));
         if (distance < best) best = distance, best_s = s, best_t = t;
       }
     centre_s = best_s;
@@ -46,7 +49,7 @@ Pattern stockinette_pattern(double wale_width) {
   pattern.name = "stockinette";
   pattern.period = {wale_width, kRow * scale};
   pattern.stitches = {1, 1};
-  pattern.yarn_radius = row_distance() / 2 * scale;
+  pattern.yarn_radius = std::min({closest(0), closest(1), closest(2)}) / 2 * scale;
   constexpr int kPoints = 64;  // the spline then follows the closed form to 1e-4 of a yarn radius
   PatternCurve curve;
   for (int i = 0; i < kPoints; ++i) curve.points.push_back(scale * loop(kTwoPi * i / kPoints - std::numbers::pi));

@@ -38,7 +38,7 @@ Stats stats_of(const Scene& scene, const Device& device, const World& world, con
   s.geometry["ply segments"] = {segments, bytes.at("ply leaves") + bytes.at("ply tree")};
   s.geometry["ply vertices"] = {vertices, bytes.at("ply vertices")};
   s.geometry["triangles"] = {world.triangle_count(), bytes.at("triangles")};
-  s.geometry["path state"] = {device.traits().pool, r.path_bytes};
+  s.geometry["path state"] = {r.pool, r.path_bytes};
   s.stage_seconds = world.seconds;
   s.stage_seconds["warp"] = on_device.fabric().warp_seconds;
   s.stage_seconds["pack leaves"] = on_device.fabric().pack_seconds;

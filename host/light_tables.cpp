@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-double luminance(const std::array<float, 3>& c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
+// The plain mean of the channels: luminance would all but hide a blue light, whose noise is as visible as another's.
+double mean(const std::array<float, 3>& c) { return (double(c[0]) + c[1] + c[2]) / 3; }
 
 // Appends the running shares of `weights`; exactly 1 from the last positive one on, and all 1 when there is none.
 void append_cdf(const std::vector<double>& weights, std::vector<float>& out) {
@@ -94,7 +95,7 @@ int LightTableBuilder::add_sphere(const std::array<float, 3>& radiance, const st
   light.radiance = {radiance[0], radiance[1], radiance[2], 0};
   light.center = {center[0], center[1], center[2], radius};
   light.area = float(4 * kPi * radius * radius);
-  return add(light, luminance(radiance) * kPi * light.area);
+  return add(light, mean(radiance) * kPi * light.area);
 }
 
 int LightTableBuilder::add_mesh(const std::array<float, 3>& radiance, const std::vector<LightTriangle>& triangles,
@@ -120,7 +121,7 @@ int LightTableBuilder::add_mesh(const std::array<float, 3>& radiance, const std:
   append_cdf(areas, tables_.cdf);
   for (const LightTriangle& t : triangles) tables_.triangles.insert(tables_.triangles.end(), t.begin(), t.end());
   tables_.triangle_index.insert(tables_.triangle_index.end(), scene_triangles.begin(), scene_triangles.end());
-  return add(light, luminance(radiance) * kPi * area * (one_sided ? 1 : 2));
+  return add(light, mean(radiance) * kPi * area * (one_sided ? 1 : 2));
 }
 
 int LightTableBuilder::add_environment(const std::array<float, 3>& mean_radiance, float power_radius) {
@@ -129,7 +130,7 @@ int LightTableBuilder::add_environment(const std::array<float, 3>& mean_radiance
   WLight light{};
   light.kind = W_LIGHT_ENVIRONMENT;
   light.radiance = {mean_radiance[0], mean_radiance[1], mean_radiance[2], 0};
-  return add(light, luminance(mean_radiance) * 4 * kPi * kPi * power_radius * power_radius);
+  return add(light, mean(mean_radiance) * 4 * kPi * kPi * power_radius * power_radius);
 }
 
 LightTables LightTableBuilder::finish() {

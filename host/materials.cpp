@@ -12,7 +12,9 @@
 namespace wale {
 namespace {
 
+// The ranges below are those that the scene's schema promises.
 constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kSharpest = 0.001;  // radians: a highlight sharper than this would be noise
 
 // One row per preset: fitted to bundles of dielectric fibres by a virtual goniometer (docs/appearance.md). Angles in
 // degrees, variances in rad^2, twist = tangent of the surface fibres' angle to the axis.
@@ -73,18 +75,18 @@ WPlyMaterial ply_material(const PlyAppearance& appearance) {
     m.back = color4(*appearance.back, "back", 0);
   }
   const double roughness = appearance.roughness.value_or(preset->beta * kDegree);
-  require_range(roughness, 0.001, 1, "roughness (radians)");
-  m.beta_r = float(roughness);
+  require_range(roughness, 0, std::numbers::pi / 2, "roughness (radians)");
+  m.beta_r = float(std::max(roughness, kSharpest));
   m.f0 = float(preset->fresnel);
   if (appearance.ior) {
-    require_range(*appearance.ior, 1, 3, "ior");
+    require_range(*appearance.ior, 1, 4, "ior");
     m.f0 = float(fresnel_of(*appearance.ior));
   }
   m.tau_e = float(appearance.optical_radius.value_or(preset->tau_e));
-  require_range(m.tau_e, 0, 100, "optical_radius");
+  require_range(m.tau_e, 0, 1e4, "optical_radius");
   m.tilt = float(preset->twist);
   if (appearance.fibre_twist) {
-    require_range(*appearance.fibre_twist, -1.4, 1.4, "fibre_twist (radians)");
+    require_range(*appearance.fibre_twist, -89 * kDegree, 89 * kDegree, "fibre_twist (radians)");
     m.tilt = float(std::tan(*appearance.fibre_twist));
   }
   m.e_r = float(preset->e_r);
@@ -108,7 +110,7 @@ WSurfaceMaterial surface_material(const SurfaceAppearance& appearance) {
   m.kind = appearance.coated ? 1 : 0;
   m.light = -1;
   require_range(appearance.roughness, 0, 1, "roughness");
-  require_range(appearance.ior, 1, 3, "ior");
+  require_range(appearance.ior, 1, 4, "ior");
   m.roughness = float(appearance.roughness);
   m.ior = float(appearance.ior);
   return m;

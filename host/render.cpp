@@ -51,6 +51,7 @@ Rendered render(const Device& device, const World& world, const SceneDevice& sce
   const double origin[3] = {world.origin.x, world.origin.y, world.origin.z};
   result.image = develop(sums, origin);
   result.counts = wavefront.counts();
+  result.pool = wavefront.pool();
   result.path_bytes = wavefront.bytes();
   return result;
 }

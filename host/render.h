@@ -22,6 +22,7 @@ struct Rendered {
   double seconds = 0;
   int samples = 0;      ///< per pixel, of the pixels that have most
   bool stopped = false; ///< by Ctrl-C or the time limit
+  uint32_t pool = 0;    ///< paths in flight
   uint64_t path_bytes = 0;
 };
 

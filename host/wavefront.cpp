@@ -193,6 +193,10 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
       read[(depth - 1) % 2].wait();
       const auto& before = lengths[(depth - 1) % 2];
       const uint32_t was = kShaded[1 - side];
+      if (depth == 1) {  // pixels are padded to whole tiles: only those of the picture have paths
+        counts_.primary += before[kShaded[1]];
+        counts_.paths += before[kShaded[1]];
+      }
       bound = before[was];
       counts_.bounce += before[was];
       counts_.shadow += before[was + 1];
@@ -211,8 +215,6 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
     launch("accumulate_aov", pixels);
   }
   device_.queue().finish();
-  counts_.primary += frame.paths;
-  counts_.paths += frame.paths;
   harvest_events();
 }
 

@@ -282,7 +282,10 @@ class Builder {
     const Bounds& b = fabric_bounds_.empty() ? bounds_ : fabric_bounds_;
     const dvec3 centre = b.empty() ? dvec3(0) : b.centre();
     c.look_at = centre;
-    c.position = centre + glm::normalize(dvec3(0.25, 0.35, 1)) * (1.05 * b.radius() / std::sin(0.5 * c.fov));
+    // fov is vertical; a picture higher than wide sees less across.
+    const double aspect = std::min(1.0, double(scene_.film.width) / double(scene_.film.height));
+    const double half_angle = std::atan(aspect * std::tan(0.5 * c.fov));
+    c.position = centre + glm::normalize(dvec3(0.25, 0.35, 1)) * (1.05 * b.radius() / std::sin(half_angle));
     c.up = dvec3(0, 1, 0);
     return c;
   }

@@ -21,6 +21,10 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
   const uint i = get_global_id(0);
   if (i >= counts[count_index]) return;
   const uint slot = list[i];
+  if (w_last_ray(&frame, depth)) {
+    mask[slot] = 0u;
+    return;
+  }
   const WScene scene = W_SCENE;
 #ifdef W_HAS_LIGHTS
   const WLights lights = W_LIGHTS;

@@ -1,5 +1,6 @@
 /* A path meets a prop, the ground or the surface of a light. */
 #include "appearance/surface.clh"
+#include "geometry/scene.clh"
 #include "lights.clh"
 #include "sampling/dimensions.clh"
 #include "sampling/sobol.clh"
@@ -26,7 +27,7 @@ __kernel void shade_surface(WFrame frame, W_PATH_PARAMS, W_LIGHT_PARAMS, __globa
   const float3 from = ray_o[slot].xyz + ray_l[slot].xyz;
 
   float3 p, ng, ns;
-  uint material, skip_triangle = W_NONE;
+  uint material, skip = W_NONE;
   if (raw.y == W_HIT_TRIANGLE) {
     __global const float* v = triangles + (ulong)raw.z * W_TRIANGLE_WORDS;
     const float3 a = vload3(0, v), b = vload3(1, v), c = vload3(2, v);
@@ -35,13 +36,14 @@ __kernel void shade_surface(WFrame frame, W_PATH_PARAMS, W_LIGHT_PARAMS, __globa
     ns = (1.0f - uv.x - uv.y) * vload3(3, v) + uv.x * vload3(4, v) + uv.y * vload3(5, v);
     ns = dot(ns, ns) > 0.0f ? normalize(ns) : ng;
     material = as_uint(v[18]);
-    skip_triangle = raw.z;
+    skip = raw.z;
   } else {
     const WSphere sphere = spheres[raw.z];
     ng = normalize(from + t * d - sphere.center.xyz);
     ns = ng;
     p = sphere.center.xyz + sphere.center.w * ng;
     material = (uint)sphere.material;
+    skip = W_SKIP_SPHERE | raw.z;
   }
   const WSurfaceMaterial m = materials[material];
   const int front = dot(ng, d) < 0.0f;
@@ -83,7 +85,7 @@ __kernel void shade_surface(WFrame frame, W_PATH_PARAMS, W_LIGHT_PARAMS, __globa
   const float3 wv = -d;
 
   uint bins = 0u;
-  if (w_max3(m.color.xyz) > 0.0f || m.kind != 0) {
+  if (!w_last_ray(&frame, depth) && (w_max3(m.color.xyz) > 0.0f || m.kind != 0)) {
 #ifdef W_HAS_LIGHTS
     if (frame.light_sampling != 2) {
       const WLightSample l = w_light_sample(&lights, p, w_sample4(&sampler, W_SET_LIGHT(depth)));
@@ -94,7 +96,7 @@ __kernel void shade_surface(WFrame frame, W_PATH_PARAMS, W_LIGHT_PARAMS, __globa
         const float3 c = weight[slot].xyz * f * l.radiance * (share / l.pdf);
         if (w_max3(c) > 0.0f) {
           bins |= W_BIN_SHADOW;
-          shadow_o[slot] = (float4)(p, as_float(skip_triangle));
+          shadow_o[slot] = (float4)(p, as_float(skip));
           shadow_l[slot] = (float4)(lift, as_float(W_NONE));
           shadow_d[slot] = (float4)(l.direction, l.distance * W_SHADOW_END);
           shadow_c[slot] = (float4)(c, 0.0f);
@@ -108,7 +110,7 @@ __kernel void shade_surface(WFrame frame, W_PATH_PARAMS, W_LIGHT_PARAMS, __globa
     if (pdf > 0.0f && dot(w, n_geo) > 0.0f) {
       bins |= w_continue(&frame, &next, depth, &sampler);
       weight[slot] = (float4)(next, 0.0f);
-      ray_o[slot] = (float4)(p, as_float(skip_triangle));
+      ray_o[slot] = (float4)(p, as_float(skip));
       ray_l[slot] = (float4)(lift, as_float(W_NONE));
       ray_d[slot] = (float4)(w, pdf);
     }

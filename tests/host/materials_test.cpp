@@ -60,7 +60,7 @@ TEST(Materials, RefusesByName) {
   bright.color = Rgb{1.5, 0, 0};
   EXPECT_THROW(ply_material(bright), Error);
   PlyAppearance smooth;
-  smooth.roughness = 0;
+  smooth.roughness = -0.1;
   EXPECT_THROW(ply_material(smooth), Error);
   SurfaceAppearance thin;
   thin.ior = 0.5;

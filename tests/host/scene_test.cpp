@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "host/materials.h"
 #include "temporary_folder.h"
 
 namespace wale {
@@ -64,6 +65,19 @@ TEST(Scene, DefaultsOfTheFormatAreThoseOfTheStructs) {
   EXPECT_EQ(scene.fabrics[0].spec.thickness, spec.thickness);
   EXPECT_EQ(scene.fabrics[0].spec.ply_radius, spec.ply_radius);
   EXPECT_EQ(scene.fabrics[0].spec.tolerance, spec.tolerance);
+}
+
+// What the schema lets through, the materials take.
+TEST(Scene, MaterialsAtTheEndsOfTheirRanges) {
+  for (const char* values : {R"("roughness": 0, "ior": 1, "optical_radius": 0, "fibre_twist": -89)",
+                             R"("roughness": 90, "ior": 4, "optical_radius": 10000, "fibre_twist": 89)"}) {
+    const Scene scene = scene_of(std::string(R"({"wale": 1, "materials": {"y": {"type": "ply", )") + values + "}}}");
+    EXPECT_NO_THROW(ply_material(scene.materials[0].yarn)) << values;
+  }
+  for (const char* values : {R"("roughness": 0, "ior": 1)", R"("roughness": 1, "ior": 4)"}) {
+    const Scene scene = scene_of(std::string(R"({"wale": 1, "materials": {"s": {"type": "coated", )") + values + "}}}");
+    EXPECT_NO_THROW(surface_material(scene.materials[0].surface)) << values;
+  }
 }
 
 TEST(Scene, MillimetresBecomeMetresAndDegreesRadians) {

@@ -58,6 +58,7 @@ TEST(Features, PlacesAreOfTheWorldAndAbsentInTheBackground) {
   EXPECT_GT(other, 10u);
 }
 
+
 // A single ply along x in front of nothing, far from the world's zero: positions come back in world coordinates, what
 // the camera misses is empty, and several waves do not leak into each other.
 TEST(Features, StraightPlyInAnEmptyWorld) {
@@ -96,6 +97,28 @@ TEST(Features, StraightPlyInAnEmptyWorld) {
       }
     }
   EXPECT_GT(hits, 400);
+}
+
+// A scene without a camera shows all of its cloth, in a picture of any shape.
+TEST(Features, FramingKeepsTheClothInside) {
+  for (const auto& [width, height] : {std::pair(24, 72), std::pair(72, 24)}) {
+    Scene scene = empty_scene(0.01, 16);
+    scene.camera_given = false;
+    scene.camera.orthographic = false;
+    scene.film.width = width;
+    scene.film.height = height;
+    add_fabric(scene, straight_yarn(0.004, 0.0015), 0.08, 0.08, 1, "wool", Rgb{1, 1, 1});
+    const Image image = take(scene, 8, 1, 0, true).image;
+    const size_t depth = channel(image, "depth.Z");
+    size_t cloth = 0;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const bool hit = image.at(x, y)[depth] > 0, border = x == 0 || y == 0 || x == width - 1 || y == height - 1;
+        cloth += hit;
+        EXPECT_FALSE(hit && border) << x << " " << y;
+      }
+    EXPECT_GT(cloth, 30u);
+  }
 }
 
 }  // namespace

@@ -61,5 +61,24 @@ INSTANTIATE_TEST_SUITE_P(All, WhiteFurnace,
                                          Case{"SwatchBsdf", swatch, "bsdf", 64}),
                          [](const auto& test) { return test.param.name; });
 
+// The channel that fibres keep must not be noisier for being one that the eye sees badly.
+TEST(ColouredFurnace, BlueFibresAreNoNoisierThanGreenOnes) {
+  double variance[3] = {};
+  for (int c = 0; c < 3; ++c) {
+    Scene scene = swatch();
+    Rgb color{0, 0, 0};
+    color[size_t(c)] = 1;
+    scene.materials[0].yarn.color = color;
+    scene.lights.push_back(constant_environment(1));
+    const Image image = take(scene, 64, 1).image;
+    EXPECT_NEAR(mean_rgb(image)[size_t(c)], 1.0, 0.005) << c;
+    EXPECT_LT(mean_rgb(image)[size_t((c + 1) % 3)], 0.5) << c;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) variance[c] += image.at(x, y)[3 + c];
+  }
+  EXPECT_NEAR(variance[0] / variance[1], 1, 0.1);
+  EXPECT_NEAR(variance[2] / variance[1], 1, 0.1);
+}
+
 }  // namespace
 }  // namespace wale::test

@@ -72,6 +72,54 @@ TEST(Transport, GroundUnderAConstantSky) {
   expect_mean(scene, 0.7 * 1.5);
 }
 
+// The last scattering event of a limited path is lit the same, whichever way its light is found.
+TEST(Transport, TheLengthLimitTakesNoDirectLight) {
+  Scene scene = ground_scene(1e-3, {0.7, 0.7, 0.7});
+  scene.lights.push_back(constant_environment(1.5));
+  scene.integrator.max_depth = 1;
+  for (const char* mode : {"mis", "light", "bsdf"}) {
+    scene.integrator.light_sampling = mode;
+    for (const double mean : mean_rgb(take(scene, 256).image)) EXPECT_NEAR(mean, 0.7 * 1.5, 0.005) << mode;
+  }
+
+  Scene cloth = empty_scene(0.002, 16);
+  add_fabric(cloth, straight_yarn(0.002, 0.0007), 0.006, 0.002, 3, "cotton", Rgb{1, 1, 1});
+  cloth.lights.push_back(constant_environment(1));
+  for (const int depth : {1, 2}) {
+    cloth.integrator.max_depth = depth;
+    cloth.integrator.light_sampling = "bsdf";
+    const double expected = mean_rgb(take(cloth, 256).image)[0];
+    EXPECT_LT(expected, 0.97) << "the limit does nothing here";
+    for (const char* mode : {"mis", "light"}) {
+      cloth.integrator.light_sampling = mode;
+      EXPECT_NEAR(mean_rgb(take(cloth, 512).image)[0] / expected, 1, 0.01) << mode << " " << depth;
+    }
+  }
+}
+
+TEST(Transport, RaysOfPaddedPixelsAreNotCounted) {
+  Scene scene = ground_scene(1e-3, {0.7, 0.7, 0.7});
+  scene.film.width = 7;
+  scene.film.height = 5;
+  EXPECT_EQ(take(scene, 3).counts.primary, 7u * 5u * 3u);
+}
+
+// A ball as large as a floor: what lies closer to it than a share of its radius is not lost.
+TEST(Transport, HugeSphereSeenFromNearby) {
+  Scene scene = empty_scene(1e-3, 8);
+  scene.materials.push_back({});
+  scene.materials[0].surface.color = {0.7, 0.7, 0.7};
+  ObjectScene ball;
+  ball.kind = ObjectScene::Kind::sphere;
+  ball.center = dvec3(0, 0, -100);
+  ball.radius = 100;
+  scene.objects.push_back(ball);
+  scene.camera.position = dvec3(0, 0, 5e-4);
+  scene.camera.look_at = dvec3(0, 0, 0);
+  scene.lights.push_back(constant_environment(1));
+  for (const double mean : mean_rgb(take(scene, 256).image)) EXPECT_NEAR(mean, 0.7, 0.005);
+}
+
 TEST(Transport, DiffuseSphereInAFurnace) {
   // Albedo a in a constant environment: a convex body shows exactly a.
   Scene scene = empty_scene(1, 24);
