@@ -12,26 +12,26 @@ namespace wale {
 /// A triangle mesh with a UV pair per corner. Polygons have been fanned into triangles.
 struct BaseMesh {
   std::string name;
-  std::vector<dvec3> position;                     ///< metres
-  std::vector<dvec3> normal;                       ///< unit, per vertex, angle weighted
-  std::vector<std::array<uint32_t, 3>> triangle;   ///< vertex indices
-  std::vector<std::array<dvec2, 3>> uv;            ///< per triangle corner; empty when the file carries none
-  size_t polygons_split = 0;                       ///< faces of more than three corners that were fanned
+  std::vector<dvec3> position;                    ///< metres
+  std::vector<dvec3> normal;                      ///< unit, per vertex, angle weighted
+  std::vector<std::array<uint32_t, 3>> triangle;  ///< vertex indices
+  std::vector<std::array<dvec2, 3>> uv;           ///< per triangle corner; empty when the file carries none
+  size_t polygons_split = 0;                      ///< faces of more than three corners that were fanned
 };
 
 /// What validation found; nothing here is fatal.
 struct MeshReport {
   size_t vertices = 0, triangles = 0, polygons_split = 0;
   size_t non_manifold_edges = 0, boundary_edges = 0, seam_edges = 0;
-  size_t degenerate_triangles = 0;   ///< zero area in space: kept, never knitted
-  size_t zero_area_uv = 0;           ///< zero area in UV: kept, never knitted
-  size_t flipped_uv = 0;             ///< against the majority of their chart
-  double overlap = 0;                ///< share of the covered UV area that is covered more than once
-  dvec2 stretch_median{0, 0};        ///< singular values of UV -> space
+  size_t degenerate_triangles = 0;  ///< zero area in space: kept, never knitted
+  size_t zero_area_uv = 0;          ///< zero area in UV: kept, never knitted
+  size_t flipped_uv = 0;            ///< against the majority of their chart
+  double overlap = 0;               ///< share of the covered UV area that is covered more than once
+  dvec2 stretch_median{0, 0};       ///< singular values of UV -> space
 };
 
-/// Reads OBJ (in double), PLY or OFF (through OpenMesh, which reads both in float). Lengths are taken as metres. Throws a
-/// user error naming the file: missing, not a mesh, no faces, NaN or infinite vertices, a face that names no vertex.
+/// Reads OBJ (in double), PLY or OFF (through OpenMesh, which reads both in float). Lengths are taken as metres. Throws
+/// a user error naming the file: missing, not a mesh, no faces, NaN or infinite vertices, a face that names no vertex.
 /// Meshes without UV are accepted here (props) and refused by require_uv.
 BaseMesh read_mesh(const std::filesystem::path& file);
 

@@ -10,9 +10,9 @@ namespace wale {
 struct Chart {
   std::vector<uint32_t> triangles;
   dvec2 uv_min{0, 0}, uv_max{0, 0};
-  dvec2 metres_per_uv{1, 1};           ///< area-weighted mean of |dP/du|, |dP/dv|
-  std::vector<dvec2> joins;            ///< translations T: uv and uv+T are the two sides of a seam (T and -T once)
-  bool mirrored = false;               ///< most of its triangles are clockwise in UV
+  dvec2 metres_per_uv{1, 1};  ///< area-weighted mean of |dP/du|, |dP/dv|
+  std::vector<dvec2> joins;   ///< translations T: uv and uv+T are the two sides of a seam (T and -T once)
+  bool mirrored = false;      ///< most of its triangles are clockwise in UV
 };
 
 /// Charts: triangles joined where an edge carries the same UV on both sides. Deterministic order (first triangle).

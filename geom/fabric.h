@@ -20,18 +20,18 @@ struct FabricSpec {
   std::string name;
   FabricScale scale;
   int plies = 3;
-  double twist_pitch = 8;      ///< yarn radii of cloth yarn per turn of the plies; negative = left-handed; 0 = no twist
-  double thickness = 1;        ///< factor on the yarn radius that the tile implies
-  double ply_radius = 0;       ///< metres in the cloth; 0 = as many touching circles as fill the yarn
-  double height_offset = 0;    ///< metres along the base normal
-  double tolerance = 0.05;     ///< ply radii
+  double twist_pitch = 8;    ///< yarn radii of cloth yarn per turn of the plies; negative = left-handed; 0 = no twist
+  double thickness = 1;      ///< factor on the yarn radius that the tile implies
+  double ply_radius = 0;     ///< metres in the cloth; 0 = as many touching circles as fill the yarn
+  double height_offset = 0;  ///< metres along the base normal
+  double tolerance = 0.05;   ///< ply radii
   double patches_per_cell = 12;  ///< wanted size of a UV cell
 };
 
 /// One yarn, cut to its chart: `plies` polylines of `count` vertices each, ply p at first_vertex + p*count.
 struct PlyRun {
   uint32_t first_vertex = 0, count = 0;
-  uint32_t yarn = 0;        ///< full yarn that it was cut from
+  uint32_t yarn = 0;  ///< full yarn that it was cut from
   uint32_t chart = 0;
   bool ghost_ends = false;  ///< closed yarn: first and last segment are neighbours only, not traced, no caps
 };
@@ -40,9 +40,9 @@ struct PlyRun {
 struct Anchor {
   uint32_t triangle = 0;
   float b1 = 0, b2 = 0;
-  float height = 0;                 ///< metres along the normal
-  float nx = 0, ny = 0, nz = 0;     ///< frame normal in the flat knit
-  float length = 0;                 ///< rest length along the full ply, metres
+  float height = 0;              ///< metres along the normal
+  float nx = 0, ny = 0, nz = 0;  ///< frame normal in the flat knit
+  float length = 0;              ///< rest length along the full ply, metres
 };
 
 /// A run of `intervals` consecutive segments of all plies of one yarn: the leaf of the tree.
@@ -57,9 +57,9 @@ struct Patch {
 struct UvGrid {
   uint32_t first_cell = 0;
   ivec2 size{0, 0};
-  dvec2 origin{0, 0};      ///< UV of the corner of cell (0,0)
-  dvec2 cell_size{1, 1};   ///< UV
-  ivec2 wrap{0, 0};        ///< columns / rows identified modulo this (joined charts); 0 = none
+  dvec2 origin{0, 0};     ///< UV of the corner of cell (0,0)
+  dvec2 cell_size{1, 1};  ///< UV
+  ivec2 wrap{0, 0};       ///< columns / rows identified modulo this (joined charts); 0 = none
 };
 
 /// Compressed rows: items of row i are item[offset[i]] .. item[offset[i+1]).
@@ -72,25 +72,25 @@ struct Csr {
 struct Fabric {
   std::string name;
   int plies = 0;
-  double ply_radius = 0, yarn_radius = 0;     ///< metres in the cloth
+  double ply_radius = 0, yarn_radius = 0;  ///< metres in the cloth
   BaseMesh mesh;
   std::vector<Chart> charts;
-  std::vector<dvec2> uv_per_metre;            ///< per chart: UV = uv_per_metre * (x, y), (x, y) in the flat knit
+  std::vector<dvec2> uv_per_metre;  ///< per chart: UV = uv_per_metre * (x, y), (x, y) in the flat knit
   std::vector<PlyRun> runs;
-  std::vector<Anchor> anchors;                ///< per vertex
+  std::vector<Anchor> anchors;  ///< per vertex
   std::vector<uint32_t> chart_of_triangle;
-  std::vector<Patch> patches;                 ///< sorted by cell
-  std::vector<UvGrid> grids;                  ///< per chart
-  Csr cell_triangles;                         ///< triangles that cover the cell (UV overlap)
-  Csr cell_segments;                          ///< segments that touch the cell: vertex ids of their starts
+  std::vector<Patch> patches;  ///< sorted by cell
+  std::vector<UvGrid> grids;   ///< per chart
+  Csr cell_triangles;          ///< triangles that cover the cell (UV overlap)
+  Csr cell_segments;           ///< segments that touch the cell: vertex ids of their starts
   struct Report {
     size_t full_yarns = 0, runs = 0, plies = 0, segments = 0, vertices = 0;
-    size_t samples_outside = 0;      ///< yarn samples beyond the half-stitch margin, not traced
-    size_t samples_extrapolated = 0; ///< in the margin
-    size_t jumps_cut = 0;            ///< places where a yarn was cut because its chart folds back beside itself in UV
-    double worst_partner_distance = 0;  ///< metres in the pattern
+    size_t samples_outside = 0;       ///< yarn samples beyond the half-stitch margin, not traced
+    size_t samples_extrapolated = 0;  ///< in the margin
+    size_t jumps_cut = 0;             ///< places where a yarn was cut because its chart folds back beside itself in UV
+    double worst_partner_distance = 0;   ///< metres in the pattern
     std::vector<ivec2> snapped_repeats;  ///< per joined chart, whole tiles across the join
-    dvec2 tile_metres{0, 0};         ///< size of one tile in the cloth
+    dvec2 tile_metres{0, 0};             ///< size of one tile in the cloth
     dvec2 stitch_metres{0, 0};
     bool mirrored = false;
   } report;

@@ -22,19 +22,21 @@ void fill_yarn(YarnSpec& spec, double yarn_radius);
 
 /// One full yarn of the flat knit. K samples; ply arrays are ply-major, [ply*K + k].
 /// A closed yarn repeats itself at both ends by one ghost sample: sample 0 is sample K-3 displaced back and sample K-1
-/// is sample 2 displaced forward (sample K-2 equals sample 1 displaced), so that every traced joint has two real neighbours.
+/// is sample 2 displaced forward (sample K-2 equals sample 1 displaced), so that every traced joint has two real
+/// neighbours.
 struct FlatYarn {
   bool closed = false;
-  std::vector<dvec3> centre;     ///< yarn axis, metres in the cloth: x course, y wale, z through the fabric
-  std::vector<dvec3> position;   ///< ply axes
-  std::vector<dvec3> normal;     ///< unit, perpendicular to the ply's mean tangent: double-reflection frame of the ply
-  std::vector<double> length;    ///< metres of ply from the start of the full yarn (rest length)
+  std::vector<dvec3> centre;    ///< yarn axis, metres in the cloth: x course, y wale, z through the fabric
+  std::vector<dvec3> position;  ///< ply axes
+  std::vector<dvec3> normal;    ///< unit, perpendicular to the ply's mean tangent: double-reflection frame of the ply
+  std::vector<double> length;   ///< metres of ply from the start of the full yarn (rest length)
 };
 
 /// Samples of one tile, the same in every instance: chosen by arc length so that the twisted ply polylines stay within
 /// spec.tolerance of their curves. `scale` takes pattern metres to cloth metres in x, y and z.
 /// Yarns are delivered one at a time, in the order of stitch(); the first link's instance tells where it lies.
-/// Deterministic; frames by double reflection (Wang et al. 2008), closing twist of closed yarns spread over their length.
+/// Deterministic; frames by double reflection (Wang et al. 2008), closing twist of closed yarns spread over their
+/// length.
 void knit_flat(const Pattern& pattern, const PartnerMap& partners, const YarnSpec& spec, dvec3 scale,
                const InstanceRect& rect, const std::function<void(FlatYarn&&)>& deliver);
 

@@ -10,7 +10,8 @@ namespace wale {
 /// How control points are to be read: passed through by a smooth spline, or as uniform cubic B-spline control points.
 enum class CurveKind { interpolating, bspline };
 
-/// One yarn curve of a tile. Open curves carry, at both ends, the point at which a curve of a neighbouring tile goes on.
+/// One yarn curve of a tile. Open curves carry, at both ends, the point at which a curve of a neighbouring tile goes
+/// on.
 struct PatternCurve {
   std::vector<dvec3> points;  ///< metres; x along the course, y along the wale, z through the fabric, 0 = mid-surface
   bool closed = false;

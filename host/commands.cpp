@@ -75,7 +75,8 @@ int run_export(const SceneArgs& args, const std::filesystem::path& output, const
         const uint32_t skip = run.ghost_ends ? 1 : 0;
         for (uint32_t k = skip; k + skip < run.count; ++k) {
           const float* v = &vertices[(first + run.first_vertex + size_t(ply) * run.count + k) * W_VERTEX_WORDS];
-          curve.points.push_back({float(v[0] + world.origin.x), float(v[1] + world.origin.y), float(v[2] + world.origin.z)});
+          curve.points.push_back(
+              {float(v[0] + world.origin.x), float(v[1] + world.origin.y), float(v[2] + world.origin.z)});
         }
         curves.push_back(std::move(curve));
       }
@@ -98,10 +99,11 @@ int run_devices() {
   if (devices.empty()) Device::open();  // says what to install
   for (size_t i = 0; i < devices.size(); ++i) {
     const auto& d = devices[i];
-    fmt::print("{}: {}\n   {} {}, {}\n   {} compute units, {:.1f} GiB, at most {:.1f} GiB in one buffer, fp64 {}\n"
-               "   vectors of {} lanes, {} paths in flight, work-groups of {}\n",
-               i, d.name, d.platform, d.driver, d.version, d.compute_units, double(d.global_bytes) / (1u << 30),
-               double(d.max_alloc_bytes) / (1u << 30), d.fp64 ? "yes" : "no", d.lanes, d.pool, d.local_size);
+    fmt::print(
+        "{}: {}\n   {} {}, {}\n   {} compute units, {:.1f} GiB, at most {:.1f} GiB in one buffer, fp64 {}\n"
+        "   vectors of {} lanes, {} paths in flight, work-groups of {}\n",
+        i, d.name, d.platform, d.driver, d.version, d.compute_units, double(d.global_bytes) / (1u << 30),
+        double(d.max_alloc_bytes) / (1u << 30), d.fp64 ? "yes" : "no", d.lanes, d.pool, d.local_size);
   }
   return 0;
 }

@@ -1,6 +1,5 @@
 #pragma once
 #include <CL/opencl.hpp>
-
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -17,9 +16,9 @@ struct DeviceTraits {
   bool fp64 = false;
   uint64_t global_bytes = 0, max_alloc_bytes = 0;
   unsigned compute_units = 1;
-  unsigned lanes = 1;        ///< width of explicit vectors: 1, 8 or 16 (W_LANES)
-  uint32_t pool = 1u << 16;  ///< paths in flight
-  unsigned local_size = 64;  ///< work-group size of every kernel
+  unsigned lanes = 1;           ///< width of explicit vectors: 1, 8 or 16 (W_LANES)
+  uint32_t pool = 1u << 16;     ///< paths in flight
+  unsigned local_size = 64;     ///< work-group size of every kernel
   bool parallel_builds = true;  ///< programs may be compiled on several threads at once
   std::string build_options;    ///< what this driver's compiler needs
 };

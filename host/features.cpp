@@ -56,9 +56,9 @@ std::vector<Reason> explain(const World& world, const IntegratorScene& integrato
       {"spheres", f.spheres, f.spheres ? fmt::format("{} spheres", world.spheres.size()) : "no sphere"},
       {"environment", f.environment, f.environment ? "an environment light" : "no environment light"},
       {"light sampling", f.lights,
-       f.lights                                   ? "lights: " + lights
+       f.lights                              ? "lights: " + lights
        : integrator.light_sampling == "bsdf" ? "integrator.light_sampling is \"bsdf\""
-                                                  : "no light to sample"},
+                                             : "no light to sample"},
       {"feature images", f.aovs, f.aovs ? "an .exr is written" : "only .png is written"},
       {"local stage " + integrator.local_stage, f.plies, f.plies ? "integrator.local_stage" : "no fabric in the scene"},
       {fmt::format("{} lanes", f.lanes), true, integrator.lanes ? "integrator.lanes" : "width of the device's vectors"},

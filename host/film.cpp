@@ -15,9 +15,9 @@ Image develop(const FilmSums& sums, const double origin[3]) {
   image.channels = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "samples"};
   const bool aov = !sums.aov.empty();
   if (aov)
-    for (const char* name : {"albedo.R", "albedo.G", "albedo.B", "depth.Z", "normal.X", "normal.Y", "normal.Z", "uv.U",
-                             "tangent.X", "tangent.Y", "tangent.Z", "uv.V", "position.X", "position.Y", "position.Z",
-                             "ply.id"})
+    for (const char* name :
+         {"albedo.R", "albedo.G", "albedo.B", "depth.Z", "normal.X", "normal.Y", "normal.Z", "uv.U", "tangent.X",
+          "tangent.Y", "tangent.Z", "uv.V", "position.X", "position.Y", "position.Z", "ply.id"})
       image.channels.push_back(name);
   const size_t pixels = size_t(sums.width) * sums.height, stride = image.channels.size();
   image.pixels.assign(pixels * stride, 0.0f);
@@ -53,8 +53,8 @@ Image develop(const FilmSums& sums, const double origin[3]) {
     // Colours and directions are averages over all samples, nothing counting as zero, as denoisers expect. A place has
     // no such average: distance, uv and position are those of the samples that met something.
     const double hits = a[3].w, k = 1 / count, place = hits > 0 ? 1 / hits : 0;
-    const std::array<double, 15> v = {a[0].x * k, a[0].y * k, a[0].z * k,     a[0].w * place, a[1].x * k,
-                                      a[1].y * k, a[1].z * k, a[1].w * place, a[2].x * k,     a[2].y * k,
+    const std::array<double, 15> v = {a[0].x * k, a[0].y * k,     a[0].z * k,     a[0].w * place, a[1].x * k,
+                                      a[1].y * k, a[1].z * k,     a[1].w * place, a[2].x * k,     a[2].y * k,
                                       a[2].z * k, a[2].w * place, a[3].x * place, a[3].y * place, a[3].z * place};
     for (size_t c = 0; c < v.size(); ++c) out[7 + c] = float(v[c] + (c >= 12 && hits > 0 ? origin[c - 12] : 0));
     out[22] = sums.ply[i] == W_NONE ? -1.0f : float(sums.ply[i]);

@@ -14,9 +14,10 @@ struct FilmSums {
   std::vector<uint32_t> ply;       ///< width*height, or empty: ply seen by the first sample
 };
 
-/// Pixel means, the variance of each mean (from the spread of the scrambles that hold samples), sample counts and, where
-/// gathered, the first-hit features. `origin` is added back to positions. Channels: R G B, variance.R/G/B, samples,
-/// albedo.R/G/B, depth.Z, normal.X/Y/Z, tangent.X/Y/Z, position.X/Y/Z, uv.U/V, ply.id (-1 where no ply was seen first).
+/// Pixel means, the variance of each mean (from the spread of the scrambles that hold samples), sample counts and,
+/// where gathered, the first-hit features. `origin` is added back to positions. Channels: R G B, variance.R/G/B,
+/// samples, albedo.R/G/B, depth.Z, normal.X/Y/Z, tangent.X/Y/Z, position.X/Y/Z, uv.U/V, ply.id (-1 where no ply was
+/// seen first).
 Image develop(const FilmSums& sums, const double origin[3]);
 
 }  // namespace wale

@@ -9,9 +9,9 @@
 namespace wale {
 
 struct RenderOptions {
-  int spp = 64;           ///< samples per pixel
-  double seconds = 0;     ///< > 0: stop after this time, whatever spp says
-  uint32_t pool = 0;      ///< paths in flight; 0 = from the device
+  int spp = 64;        ///< samples per pixel
+  double seconds = 0;  ///< > 0: stop after this time, whatever spp says
+  uint32_t pool = 0;   ///< paths in flight; 0 = from the device
   bool aovs = false;
   std::filesystem::path kernel_dir;
 };
@@ -20,9 +20,9 @@ struct Rendered {
   Image image;
   WaveCounts counts;
   double seconds = 0;
-  int samples = 0;      ///< per pixel, of the pixels that have most
-  bool stopped = false; ///< by Ctrl-C or the time limit
-  uint32_t pool = 0;    ///< paths in flight
+  int samples = 0;       ///< per pixel, of the pixels that have most
+  bool stopped = false;  ///< by Ctrl-C or the time limit
+  uint32_t pool = 0;     ///< paths in flight
   uint64_t path_bytes = 0;
 };
 

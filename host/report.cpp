@@ -52,8 +52,11 @@ Json fabric_json(const Fabric& f, const MeshReport& mesh) {
 }  // namespace
 
 std::string build_report_json(const World& world) {
-  Json json{{"fabrics", Json::array()}, {"triangles", world.triangle_count()}, {"spheres", world.spheres.size()},
-            {"notes", world.notes}, {"seconds", world.seconds}};
+  Json json{{"fabrics", Json::array()},
+            {"triangles", world.triangle_count()},
+            {"spheres", world.spheres.size()},
+            {"notes", world.notes},
+            {"seconds", world.seconds}};
   for (size_t i = 0; i < world.fabrics.size(); ++i)
     json["fabrics"].push_back(fabric_json(world.fabrics[i], world.fabric_mesh_reports[i]));
   return json.dump(2) + "\n";
@@ -66,24 +69,28 @@ std::string build_report_text(const World& world) {
     const MeshReport& m = world.fabric_mesh_reports[i];
     const auto& r = f.report;
     out += fmt::format("fabric \"{}\"\n", f.name);
-    out += fmt::format("  base mesh  {} vertices, {} triangles, {} charts, {} seam edges, {} boundary edges\n", m.vertices,
-                       m.triangles, f.charts.size(), m.seam_edges, m.boundary_edges);
-    out += fmt::format("  UV         stretch {:.3g} x {:.3g} (median), {} flipped, {} without area, {:.1f} % covered twice\n",
-                       m.stretch_median.x, m.stretch_median.y, m.flipped_uv, m.zero_area_uv, 100 * m.overlap);
+    out += fmt::format("  base mesh  {} vertices, {} triangles, {} charts, {} seam edges, {} boundary edges\n",
+                       m.vertices, m.triangles, f.charts.size(), m.seam_edges, m.boundary_edges);
+    out += fmt::format(
+        "  UV         stretch {:.3g} x {:.3g} (median), {} flipped, {} without area, {:.1f} % covered twice\n",
+        m.stretch_median.x, m.stretch_median.y, m.flipped_uv, m.zero_area_uv, 100 * m.overlap);
     if (m.non_manifold_edges || m.degenerate_triangles)
       out += fmt::format("  warning    {} non-manifold edges, {} triangles without area\n", m.non_manifold_edges,
                          m.degenerate_triangles);
-    if (m.overlap > 0.01) out += "  warning    overlapping UVs: where two triangles share a UV, one of them stays bare\n";
-    out += fmt::format("  stitch     {:.3f} x {:.3f} mm ({:.2f} wales and {:.2f} courses per cm), tile {:.3f} x {:.3f} mm\n",
-                       1e3 * r.stitch_metres.x, 1e3 * r.stitch_metres.y, 0.01 / r.stitch_metres.x,
-                       0.01 / r.stitch_metres.y, 1e3 * r.tile_metres.x, 1e3 * r.tile_metres.y);
-    out += fmt::format("  yarn       {} plies, yarn radius {:.4f} mm, ply radius {:.4f} mm\n", f.plies, 1e3 * f.yarn_radius,
-                       1e3 * f.ply_radius);
+    if (m.overlap > 0.01)
+      out += "  warning    overlapping UVs: where two triangles share a UV, one of them stays bare\n";
+    out += fmt::format(
+        "  stitch     {:.3f} x {:.3f} mm ({:.2f} wales and {:.2f} courses per cm), tile {:.3f} x {:.3f} mm\n",
+        1e3 * r.stitch_metres.x, 1e3 * r.stitch_metres.y, 0.01 / r.stitch_metres.x, 0.01 / r.stitch_metres.y,
+        1e3 * r.tile_metres.x, 1e3 * r.tile_metres.y);
+    out += fmt::format("  yarn       {} plies, yarn radius {:.4f} mm, ply radius {:.4f} mm\n", f.plies,
+                       1e3 * f.yarn_radius, 1e3 * f.ply_radius);
     out += fmt::format("  knitted    {} full yarns, {} runs, {} segments, {} vertices ({} bytes each)\n", r.full_yarns,
                        r.runs, r.segments, r.vertices, W_VERTEX_WORDS * 4);
     out += fmt::format("  cut        {} samples outside the cloth, {} in the half stitch past its borders\n",
                        r.samples_outside, r.samples_extrapolated);
-    for (const auto& s : r.snapped_repeats) out += fmt::format("  joined     repeats snapped to {} x {} tiles\n", s.x, s.y);
+    for (const auto& s : r.snapped_repeats)
+      out += fmt::format("  joined     repeats snapped to {} x {} tiles\n", s.x, s.y);
     out += fmt::format("  partners   worst distance {:.3g} mm\n", 1e3 * r.worst_partner_distance);
     if (r.mirrored) out += "  mirrored   a UV chart is mirrored, and so is its cloth, twist included\n";
   }
@@ -117,7 +124,10 @@ std::string plan_text(const World& world, const SceneDevice& scene, const Integr
 
 std::string plan_json(const World& world, const SceneDevice& scene, const IntegratorScene& integrator,
                       const Features& features) {
-  Json json{{"features", Json::array()}, {"programs", Json::array()}, {"options", features.options()}, {"buffers", scene.bytes()}};
+  Json json{{"features", Json::array()},
+            {"programs", Json::array()},
+            {"options", features.options()},
+            {"buffers", scene.bytes()}};
   for (const auto& r : explain(world, integrator, features))
     json["features"].push_back({{"feature", r.feature}, {"used", r.used}, {"because", r.because}});
   for (const auto& s : wavefront_stages(features))

@@ -34,13 +34,13 @@ struct PatternSource {
 
 /// Appearance of plies: a preset, then what the scene overrides. Colours are scene-linear Rec. 709 in [0,1].
 struct PlyAppearance {
-  std::string preset = "wool";  ///< cotton, wool, silk, polyester
-  std::optional<Rgb> color;             ///< fibre colour C_f
-  std::optional<Rgb> forward, back;     ///< body colours directly (both or none)
-  std::optional<double> roughness;      ///< beta_R, radians
+  std::string preset = "wool";       ///< cotton, wool, silk, polyester
+  std::optional<Rgb> color;          ///< fibre colour C_f
+  std::optional<Rgb> forward, back;  ///< body colours directly (both or none)
+  std::optional<double> roughness;   ///< beta_R, radians
   std::optional<double> ior;
-  std::optional<double> optical_radius; ///< tau_e
-  std::optional<double> fibre_twist;    ///< angle of the surface fibres to the ply axis, radians, signed
+  std::optional<double> optical_radius;  ///< tau_e
+  std::optional<double> fibre_twist;     ///< angle of the surface fibres to the ply axis, radians, signed
 };
 
 struct SurfaceAppearance {
@@ -72,34 +72,34 @@ struct ObjectScene {
   MeshSource mesh;
   Transform transform;
   dvec3 center{0, 0, 0};
-  double radius = 1;        ///< sphere, metres
-  double height = 0;        ///< ground: along `up`
-  double extent = 10;       ///< ground: half size, metres
-  dvec3 up{0, 1, 0};        ///< ground
-  int material = 0;         ///< a surface material
+  double radius = 1;   ///< sphere, metres
+  double height = 0;   ///< ground: along `up`
+  double extent = 10;  ///< ground: half size, metres
+  dvec3 up{0, 1, 0};   ///< ground
+  int material = 0;    ///< a surface material
 };
 
 struct LightScene {
   enum class Kind { quad, sphere, mesh, environment } kind = Kind::quad;
-  Rgb radiance{1, 1, 1};             ///< W/(m^2 sr), times intensity already applied
+  Rgb radiance{1, 1, 1};  ///< W/(m^2 sr), times intensity already applied
   dvec3 position{0, 0, 0}, look_at{0, 0, 0}, up{0, 1, 0};
-  double width = 1, height = 1;      ///< quad
-  bool two_sided = false;            ///< quad: else only towards look_at
-  double radius = 1;                 ///< sphere
+  double width = 1, height = 1;  ///< quad
+  bool two_sided = false;        ///< quad: else only towards look_at
+  double radius = 1;             ///< sphere
   MeshSource mesh;
   Transform transform;
-  std::filesystem::path file;        ///< environment image; empty = constant radiance
-  double rotation = 0;               ///< environment: radians about its up axis
+  std::filesystem::path file;  ///< environment image; empty = constant radiance
+  double rotation = 0;         ///< environment: radians about its up axis
   dvec3 env_up{0, 1, 0};
 };
 
 struct CameraScene {
   bool orthographic = false;
   dvec3 position{0, 0, 1}, look_at{0, 0, 0}, up{0, 1, 0};
-  double fov = 0.6;           ///< vertical, radians
-  double height = 1;          ///< orthographic: metres
-  double aperture = 0;        ///< lens radius, metres
-  double focus = 0;           ///< metres; 0 = distance to look_at
+  double fov = 0.6;     ///< vertical, radians
+  double height = 1;    ///< orthographic: metres
+  double aperture = 0;  ///< lens radius, metres
+  double focus = 0;     ///< metres; 0 = distance to look_at
 };
 
 struct FilmScene {
@@ -111,7 +111,7 @@ struct FilmScene {
 
 struct IntegratorScene {
   int spp = 64;
-  int max_depth = 0;                   ///< scattering events; 0 = unlimited
+  int max_depth = 0;  ///< scattering events; 0 = unlimited
   int russian_roulette_depth = 4;
   std::string light_sampling = "mis";  ///< mis, light, bsdf
   std::string local_stage = "exact";   ///< exact, cell, cell+ring

@@ -12,7 +12,8 @@ std::vector<float> in_order(const std::vector<float>& triangles, const std::vect
   std::vector<float> out;
   out.reserve(triangles.size());
   for (const uint32_t t : order)
-    out.insert(out.end(), triangles.begin() + std::ptrdiff_t(t * kWords), triangles.begin() + std::ptrdiff_t((t + 1) * kWords));
+    out.insert(out.end(), triangles.begin() + std::ptrdiff_t(t * kWords),
+               triangles.begin() + std::ptrdiff_t((t + 1) * kWords));
   return out;
 }
 
@@ -28,7 +29,8 @@ std::vector<float> corners_of(const std::vector<float>& triangles) {
 std::vector<FabricInput> inputs_of(const World& world) {
   std::vector<FabricInput> inputs;
   for (size_t i = 0; i < world.fabrics.size(); ++i)
-    inputs.push_back({&world.fabrics[i], world.fabric_material[i], world.ply_materials[world.fabric_material[i]].tau_e});
+    inputs.push_back(
+        {&world.fabrics[i], world.fabric_material[i], world.ply_materials[world.fabric_material[i]].tau_e});
   return inputs;
 }
 
@@ -109,7 +111,8 @@ std::map<std::string, uint64_t> SceneDevice::bytes() const {
           {"environment", env_texels_.bytes() + env_cdf_.bytes()},
           {"lights", lights_.bytes() + light_cdf_.bytes() + light_triangles_.bytes()},
           {"materials", ply_materials_.bytes() + surface_materials_.bytes()},
-          {"UV cells", stage_ == LocalStage::exact ? 0
+          {"UV cells", stage_ == LocalStage::exact
+                           ? 0
                            : fabric_.cell_triangles.bytes() + fabric_.cell_segments.bytes() + fabric_.base_uv.bytes()}};
 }
 

@@ -42,11 +42,13 @@ Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Featu
   if (film_bytes > device.traits().max_alloc_bytes)
     user_error("film.size: {} x {} pixels need {} bytes in one buffer, the device allows {}", camera.width,
                camera.height, film_bytes, device.traits().max_alloc_bytes);
-  for (auto* b : {&ray_o_, &ray_l_, &ray_d_, &weight_, &hit_, &radiance_, &shadow_o_, &shadow_l_, &shadow_d_, &shadow_c_})
+  for (auto* b :
+       {&ray_o_, &ray_l_, &ray_d_, &weight_, &hit_, &radiance_, &shadow_o_, &shadow_l_, &shadow_d_, &shadow_c_})
     vec(*b, pool_);
   hit_uv_ = Buffer<std::array<float, 2>>(device_, pool_);
   bytes_ += hit_uv_.bytes();
-  for (auto* b : {&mask_, &active_[0], &active_[1], &ply_list_, &surface_list_, &miss_list_, &shadow_list_, &spare_list_})
+  for (auto* b :
+       {&mask_, &active_[0], &active_[1], &ply_list_, &surface_list_, &miss_list_, &shadow_list_, &spare_list_})
     ints(*b, pool_);
   ints(chunk_, (pool_ / kChunk + 1) * 3);
   ints(queue_counts_, kQueueCounts);
@@ -149,8 +151,8 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
   frame.samples_before = first_sample;
   frame.samples_in_wave = samples;
   frame.paths = pixels * samples;
-  for (const char* name : {"generate", "intersect", "miss", "shade_ply", "shade_surface", "connect", "accumulate",
-                           "accumulate_aov"})
+  for (const char* name :
+       {"generate", "intersect", "miss", "shade_ply", "shade_surface", "connect", "accumulate", "accumulate_aov"})
     if (const auto found = kernels_.find(name); found != kernels_.end()) found->second.setArg(0, frame);
 
   launch("generate", frame.paths);

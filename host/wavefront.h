@@ -28,8 +28,9 @@ struct WaveCounts {
 };
 
 /// Film and path state on the device, and the kernels of one set of features. One wave traces a block of pixels times a
-/// run of samples to the end of every path: generate, then per bounce intersect, compact, miss, shade, compact, connect,
-/// then accumulate. Queue lengths stay on the device; the host reads them one bounce late to size its launches.
+/// run of samples to the end of every path: generate, then per bounce intersect, compact, miss, shade, compact,
+/// connect, then accumulate. Queue lengths stay on the device; the host reads them one bounce late to size its
+/// launches.
 class Wavefront {
  public:
   Wavefront(const Device& device, const SceneDevice& scene, const Features& features, const WCamera& camera,
@@ -72,7 +73,8 @@ class Wavefront {
 
   Buffer<w_float4> ray_o_, ray_l_, ray_d_, weight_, hit_, radiance_, shadow_o_, shadow_l_, shadow_d_, shadow_c_;
   Buffer<std::array<float, 2>> hit_uv_;
-  Buffer<uint32_t> mask_, active_[2], ply_list_, surface_list_, miss_list_, shadow_list_, spare_list_, chunk_, queue_counts_;
+  Buffer<uint32_t> mask_, active_[2], ply_list_, surface_list_, miss_list_, shadow_list_, spare_list_, chunk_,
+      queue_counts_;
   Buffer<w_float4> film_, aov_, aov_film_;
   Buffer<uint32_t> ply_film_;
 };

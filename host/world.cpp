@@ -84,9 +84,10 @@ class Builder {
     const double segments = double(estimate_segments(mesh, pattern, spec));
     const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
     if (segments * kBytes > 0.8 * memory)
-      user_error("fabric \"{}\": about {:.3g} ply segments would need {:.3g} GB, this machine has {:.3g} GB; use fewer "
-                 "repeats, a coarser gauge or a larger tolerance",
-                 spec.name, segments, segments * kBytes * 1e-9, memory * 1e-9);
+      user_error(
+          "fabric \"{}\": about {:.3g} ply segments would need {:.3g} GB, this machine has {:.3g} GB; use fewer "
+          "repeats, a coarser gauge or a larger tolerance",
+          spec.name, segments, segments * kBytes * 1e-9, memory * 1e-9);
   }
 
   int add_material(const SurfaceAppearance& look) {
@@ -176,10 +177,18 @@ class Builder {
       const bool black = light.file.empty() && light.radiance == Rgb{0, 0, 0};
       if (black) continue;  // gives nothing: not simulated
       switch (light.kind) {
-        case LightScene::Kind::sphere: add_sphere_light(light, tables); break;
-        case LightScene::Kind::environment: add_environment(light, tables); break;
-        case LightScene::Kind::quad: add_quad_light(light, tables); break;
-        case LightScene::Kind::mesh: add_mesh_light(light, tables); break;
+        case LightScene::Kind::sphere:
+          add_sphere_light(light, tables);
+          break;
+        case LightScene::Kind::environment:
+          add_environment(light, tables);
+          break;
+        case LightScene::Kind::quad:
+          add_quad_light(light, tables);
+          break;
+        case LightScene::Kind::mesh:
+          add_mesh_light(light, tables);
+          break;
       }
     }
     for (const auto& t : triangles_) upload_triangle(t);
@@ -243,7 +252,8 @@ class Builder {
         ++count;
       }
     if (count)
-      world_.notes.push_back(fmt::format("{}: {} negative values (lowest {:.3g}) count as 0", file.string(), count, lowest));
+      world_.notes.push_back(
+          fmt::format("{}: {} negative values (lowest {:.3g}) count as 0", file.string(), count, lowest));
   }
 
   void add_environment(const LightScene& light, LightTableBuilder& tables) {
@@ -263,7 +273,8 @@ class Builder {
       std::vector<float> rgb(size_t(image.width) * image.height * 3);
       const size_t n = image.channels.size();
       for (size_t i = 0; i < rgb.size() / 3; ++i)
-        for (size_t k = 0; k < 3; ++k) rgb[3 * i + k] = image.pixels[i * n + (n >= 3 ? k : 0)] * float(light.radiance[k]);
+        for (size_t k = 0; k < 3; ++k)
+          rgb[3 * i + k] = image.pixels[i * n + (n >= 3 ? k : 0)] * float(light.radiance[k]);
       darken_negative(rgb, light.file);
       world_.environment_tables = environment_tables(rgb, image.width, image.height);
       env.width = image.width;

@@ -18,24 +18,24 @@ struct Loaders {
   std::function<Image(const std::filesystem::path&)> image;
 };
 
-/// A scene made concrete on the host: knitted fabrics, triangles, lights and materials, ready to be uploaded. Positions of
-/// fabrics are in double; everything in float is relative to `origin`.
+/// A scene made concrete on the host: knitted fabrics, triangles, lights and materials, ready to be uploaded. Positions
+/// of fabrics are in double; everything in float is relative to `origin`.
 struct World {
   dvec3 origin{0, 0, 0};  ///< metres; subtracted from every position before it becomes float
   std::vector<Fabric> fabrics;
   std::vector<MeshReport> fabric_mesh_reports;
   std::vector<WPlyMaterial> ply_materials;
-  std::vector<uint32_t> fabric_material;         ///< per fabric, into ply_materials
-  std::vector<float> triangles;                  ///< W_TRIANGLE_WORDS per triangle, see stages/shade_surface.cl
+  std::vector<uint32_t> fabric_material;  ///< per fabric, into ply_materials
+  std::vector<float> triangles;           ///< W_TRIANGLE_WORDS per triangle, see stages/shade_surface.cl
   std::vector<WSphere> spheres;
   std::vector<WSurfaceMaterial> surface_materials;
   LightTables lights;
   WEnvironment environment{};
-  EnvironmentTables environment_tables;          ///< empty for a constant environment
+  EnvironmentTables environment_tables;  ///< empty for a constant environment
   WCamera camera{};
-  std::vector<std::string> notes;                ///< what was mended in the input, one line each
-  std::vector<std::string> light_names;          ///< per light, for `wale plan`
-  std::map<std::string, double> seconds;         ///< per step of the build
+  std::vector<std::string> notes;         ///< what was mended in the input, one line each
+  std::vector<std::string> light_names;   ///< per light, for `wale plan`
+  std::map<std::string, double> seconds;  ///< per step of the build
 
   size_t triangle_count() const { return triangles.size() / kTriangleWords; }
   static constexpr size_t kTriangleWords = 20;

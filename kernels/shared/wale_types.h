@@ -37,25 +37,28 @@ typedef int32_t w_int;
    padding). Missing neighbours at open ends repeat the end vertex. */
 #define W_LEAF_LANES 16
 #define W_LEAF_HEADER 12
-#define W_LEAF_RADIUS 0     /* float, metres */
-#define W_LEAF_SEGMENT 1    /* segment id of lane 0: the vertex id of its start */
-#define W_LEAF_STRIDE 2     /* vertices per ply: segment id of lane (k,p) = SEGMENT + p*STRIDE + k */
-#define W_LEAF_MATERIAL 3   /* ply material */
-#define W_LEAF_LAYOUT 4     /* n | lanes << 8 | S << 16 */
-#define W_LEAF_CUTS 5       /* bit l: lane l starts at a perpendicular cut (sphere joint or cap); bit 16+l: ends at one */
-#define W_LEAF_SPHERES 6    /* bit l: lane l owns the sphere at its start; bit 16+l: at its end */
-#define W_LEAF_TAU 7        /* float, effective optical radius of the ply: pass-through exp(-2 tau cos gamma) */
-#define W_LEAF_CELL 8       /* UV cell that owns the patch (global number) */
+#define W_LEAF_RADIUS 0   /* float, metres */
+#define W_LEAF_SEGMENT 1  /* segment id of lane 0: the vertex id of its start */
+#define W_LEAF_STRIDE 2   /* vertices per ply: segment id of lane (k,p) = SEGMENT + p*STRIDE + k */
+#define W_LEAF_MATERIAL 3 /* ply material */
+#define W_LEAF_LAYOUT 4   /* n | lanes << 8 | S << 16 */
+#define W_LEAF_CUTS 5     /* bit l: lane l starts at a perpendicular cut (sphere joint or cap); bit 16+l: ends at one */
+#define W_LEAF_SPHERES 6  /* bit l: lane l owns the sphere at its start; bit 16+l: at its end */
+#define W_LEAF_TAU 7      /* float, effective optical radius of the ply: pass-through exp(-2 tau cos gamma) */
+#define W_LEAF_CELL 8     /* UV cell that owns the patch (global number) */
 #define W_LEAF_FABRIC 9
-#define W_LEAF_ENDS 10      /* bit 0: the first segment starts at an open end of the yarn; bit 1: the last one ends there */
-#define W_LEAF_PLY 11       /* number of the run's first ply, over all fabrics */
+#define W_LEAF_ENDS 10 /* bit 0: the first segment starts at an open end of the yarn; bit 1: the last one ends there \
+                        */
+#define W_LEAF_PLY 11  /* number of the run's first ply, over all fabrics */
 /* Hit code of a ply segment: leaf offset (16-byte units) << 4 | lane. */
 
-/* --- stored ply vertex: 7 floats, 28 bytes: position, frame normal, rest length along the full ply ----------------- */
+/* --- stored ply vertex: 7 floats, 28 bytes: position, frame normal, rest length along the full ply -----------------
+ */
 #define W_VERTEX_WORDS 7
 
 /* --- triangle leaf (props, emissive meshes): header 4 words: first triangle, count, 0, 0; then v0 x,y,z [16],
-   v1-v0 x,y,z [16], v2-v0 x,y,z [16]. Lane l is triangle first + l. ------------------------------------------------- */
+   v1-v0 x,y,z [16], v2-v0 x,y,z [16]. Lane l is triangle first + l. -------------------------------------------------
+ */
 #define W_TRI_LEAF_WORDS 148
 
 /* What a ray hit. */
@@ -88,78 +91,79 @@ typedef struct WGrid {
 
 /* Ply BSDF parameters; names as in docs/appearance.md. */
 typedef struct WPlyMaterial {
-  w_float4 fibre;        /* rgb fibre colour C_f; w = 1 when forward and back give the body colours directly */
-  w_float4 forward;      /* rgb A_F when direct; w unused */
-  w_float4 back;         /* rgb A_B when direct; w unused */
+  w_float4 fibre;   /* rgb fibre colour C_f; w = 1 when forward and back give the body colours directly */
+  w_float4 forward; /* rgb A_F when direct; w unused */
+  w_float4 back;    /* rgb A_B when direct; w unused */
   float tau_e, f0, beta_r, e_r;
   float e_r_h4, b, s_f0, e_f;
   float d_f, s_b, d_b, v_c;
-  float v_e, n0, n1, tilt;   /* tilt = tan of the angle between surface fibres and the ply axis, signed */
+  float v_e, n0, n1, tilt; /* tilt = tan of the angle between surface fibres and the ply axis, signed */
 } WPlyMaterial;
 
 /* Materials of meshes. kind 0 diffuse, 1 diffuse under a rough dielectric coat (GGX). */
 typedef struct WSurfaceMaterial {
-  w_float4 color;        /* rgb diffuse albedo; w unused */
-  w_float4 emission;     /* rgb radiance, both sides unless one_sided; w unused */
+  w_float4 color;    /* rgb diffuse albedo; w unused */
+  w_float4 emission; /* rgb radiance, both sides unless one_sided; w unused */
   w_int kind;
-  w_int light;           /* index of the light that this surface belongs to, or -1 */
-  float roughness;       /* GGX alpha = roughness^2 */
+  w_int light;     /* index of the light that this surface belongs to, or -1 */
+  float roughness; /* GGX alpha = roughness^2 */
   float ior;
 } WSurfaceMaterial;
 
-/* Lights that are sampled. kind 0 sphere, 1 mesh (triangles of the scene, area weighted), 2 environment. A quad is a mesh of two triangles. */
+/* Lights that are sampled. kind 0 sphere, 1 mesh (triangles of the scene, area weighted), 2 environment. A quad is a
+ * mesh of two triangles. */
 #define W_LIGHT_SPHERE 0
 #define W_LIGHT_MESH 1
 #define W_LIGHT_ENVIRONMENT 2
 typedef struct WLight {
-  w_float4 radiance;     /* rgb; w = probability of choosing this light */
-  w_float4 center;       /* sphere: centre xyz, radius w */
+  w_float4 radiance; /* rgb; w = probability of choosing this light */
+  w_float4 center;   /* sphere: centre xyz, radius w */
   w_int kind;
   w_uint first_triangle; /* mesh: range in the light triangle list */
   w_uint triangles;
-  float area;            /* m^2, of all triangles */
+  float area; /* m^2, of all triangles */
 } WLight;
 
 /* Sphere that rays meet (a light, or a body). */
 typedef struct WSphere {
-  w_float4 center;       /* xyz, radius in w */
-  w_int material;        /* surface material */
-  w_int light;           /* or -1 */
+  w_float4 center; /* xyz, radius in w */
+  w_int material;  /* surface material */
+  w_int light;     /* or -1 */
   w_int pad0, pad1;
 } WSphere;
 
 /* Environment: equirectangular, width x height texels of rgb (float4), row 0 at the top (+up), direction by
    docs/lights.md; or a constant when width = 0. */
 typedef struct WEnvironment {
-  w_float4 radiance;     /* rgb when width = 0; w = 1 if the environment exists */
-  w_float4 to_local[3];  /* rows of the world -> map rotation */
+  w_float4 radiance;    /* rgb when width = 0; w = 1 if the environment exists */
+  w_float4 to_local[3]; /* rows of the world -> map rotation */
   w_int width, height;
-  float average;         /* mean of the sampling density's weight over the sphere */
-  w_int light;           /* index of its WLight or -1 */
+  float average; /* mean of the sampling density's weight over the sphere */
+  w_int light;   /* index of its WLight or -1 */
 } WEnvironment;
 
 /* kind 0 perspective (thin lens when aperture > 0), 1 orthographic. x right, y up, film plane [-1,1]*half size. */
 typedef struct WCamera {
   w_float4 origin, right, up, forward;
-  float half_width, half_height;  /* tangent of half the field of view, or half the film in metres (orthographic) */
-  float aperture, focus;          /* lens radius and distance of the plane in focus, metres */
+  float half_width, half_height;     /* tangent of half the field of view, or half the film in metres (orthographic) */
+  float aperture, focus;             /* lens radius and distance of the plane in focus, metres */
   w_int kind, width, height, filter; /* filter 0 box, 1 tent of 2 pixels */
 } WCamera;
 
 /* Everything that changes between launches. */
 typedef struct WFrame {
-  w_uint first_path;       /* first (pixel, sample) index of this wave, in 2^32 steps below */
+  w_uint first_path; /* first (pixel, sample) index of this wave, in 2^32 steps below */
   w_uint first_path_high;
-  w_uint paths;            /* in this wave */
+  w_uint paths; /* in this wave */
   w_uint seed;
-  w_uint samples_before;   /* samples per pixel already done: sample = samples_before + local */
-  w_uint samples_in_wave;  /* per pixel */
+  w_uint samples_before;  /* samples per pixel already done: sample = samples_before + local */
+  w_uint samples_in_wave; /* per pixel */
   w_uint first_pixel;
-  w_uint max_depth;        /* 0 = unlimited */
-  w_int light_sampling;    /* 0 MIS, 1 light sampling only, 2 BSDF sampling only */
+  w_uint max_depth;     /* 0 = unlimited */
+  w_int light_sampling; /* 0 MIS, 1 light sampling only, 2 BSDF sampling only */
   w_uint lights;
   w_uint spheres;
-  w_uint roulette_depth;   /* first depth at which Russian roulette may end a path */
+  w_uint roulette_depth; /* first depth at which Russian roulette may end a path */
 } WFrame;
 
 /* Rare events, counted on the device: never hidden. */

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "run_program.h"
-#include "temporary_folder.h"
+#include "tests/run_program.h"
+#include "tests/temporary_folder.h"
 
 namespace wale::test {
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "host/flip.h"
-#include "temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace wale {
 namespace {

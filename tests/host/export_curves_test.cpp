@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace wale {
 namespace {

@@ -13,7 +13,7 @@
 #include "host/atomic_file.h"
 #include "host/export_curves.h"
 #include "host/schema.h"
-#include "temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace wale {
 namespace {

@@ -1,7 +1,7 @@
 // Places of values, and what the parser refuses.
 #include "host/json_document.h"
 
-#include "temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace wale {
 namespace {

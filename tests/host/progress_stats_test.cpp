@@ -7,7 +7,7 @@
 #include "host/progress.h"
 #include "host/stats.h"
 #include "host/suggest.h"
-#include "temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace wale {
 namespace {

@@ -1,6 +1,6 @@
 // Every kind of bad scene has its name, its place and its advice.
 #include "host/scene.h"
-#include "temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace wale {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "host/materials.h"
-#include "temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace wale {
 namespace {

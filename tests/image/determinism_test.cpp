@@ -2,9 +2,10 @@
 // paths and any number of threads.
 #include <gtest/gtest.h>
 
-#include "tests/host/temporary_folder.h"
 #include "tests/image/picture.h"
 #include "tests/image/program.h"
+#include "tests/run_program.h"
+#include "tests/temporary_folder.h"
 
 namespace wale::test {
 namespace {
@@ -57,13 +58,13 @@ TEST(Determinism, EveryNumberOfThreadsGivesTheSameBytes) {
   std::vector<std::string> devices;
   for (const std::string threads : {"1", "2"}) {
     const std::vector<std::string> environment = {"POCL_MAX_PTHREAD_COUNT=" + threads};
-    ASSERT_EQ(run_program(environment, {"devices"}, folder / "devices.txt"), 0) << file_text(folder / "devices.txt");
-    devices.push_back(file_text(folder / "devices.txt"));
+    const Outcome listed = run_wale({"devices"}, environment);
+    ASSERT_EQ(listed.status, 0) << listed.err;
+    devices.push_back(listed.out);
     const auto picture = folder / ("threads" + threads + ".exr");
-    ASSERT_EQ(run_program(environment, {"render", scene.string(), "-o", picture.string(), "--spp", "20", "--quiet"},
-                          folder / "log.txt"),
-              0)
-        << file_text(folder / "log.txt");
+    const Outcome run =
+        run_wale({"render", scene.string(), "-o", picture.string(), "--spp", "20", "--quiet"}, environment);
+    ASSERT_EQ(run.status, 0) << run.err;
     images.push_back(read_image(picture));
   }
   ASSERT_GT(images[0].channels.size(), 15u) << "features are compared too";

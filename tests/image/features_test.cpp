@@ -58,7 +58,6 @@ TEST(Features, PlacesAreOfTheWorldAndAbsentInTheBackground) {
   EXPECT_GT(other, 10u);
 }
 
-
 // A single ply along x in front of nothing, far from the world's zero: positions come back in world coordinates, what
 // the camera misses is empty, and several waves do not leak into each other.
 TEST(Features, StraightPlyInAnEmptyWorld) {
@@ -72,7 +71,7 @@ TEST(Features, StraightPlyInAnEmptyWorld) {
   scene.lights.push_back(constant_environment(1));
   const Image image = take(scene, 8, 0, 1000, true).image;
   const size_t ply = channel(image, "ply.id"), depth = channel(image, "depth.Z"), x = channel(image, "position.X"),
-            nz = channel(image, "normal.Z"), tx = channel(image, "tangent.X"), samples = channel(image, "samples");
+               nz = channel(image, "normal.Z"), tx = channel(image, "tangent.X"), samples = channel(image, "samples");
   int hits = 0;
   for (int row = 0; row < image.height; ++row)
     for (int column = 0; column < image.width; ++column) {

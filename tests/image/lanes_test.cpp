@@ -3,9 +3,10 @@
 
 #include <cmath>
 
-#include "tests/host/temporary_folder.h"
 #include "tests/image/picture.h"
 #include "tests/image/program.h"
+#include "tests/run_program.h"
+#include "tests/temporary_folder.h"
 
 namespace wale::test {
 namespace {
@@ -52,15 +53,14 @@ TEST(Drivers, OclgrindGivesTheSamePicture) {
   // A simulated second is long: few pixels, a coarse cloth, two scattering events.
   const auto scene = folder.write("scene.json", everything_scene(10, 12)), picture = folder / "oclgrind.exr";
   const std::vector<std::string> environment = {"OCL_ICD_VENDORS=" + vendors.path().string() + "/"};
-  ASSERT_EQ(run_program(environment, {"devices"}, folder / "devices.txt"), 0) << file_text(folder / "devices.txt");
-  ASSERT_NE(file_text(folder / "devices.txt").find("Oclgrind"), std::string::npos) << file_text(folder / "devices.txt");
+  const Outcome listed = run_wale({"devices"}, environment);
+  ASSERT_EQ(listed.status, 0) << listed.err;
+  ASSERT_NE(listed.out.find("Oclgrind"), std::string::npos) << listed.out;
   const std::string shorter = "integrator.max_depth=2", coarser = "fabrics.0.tolerance=0.3";
-  ASSERT_EQ(run_program(environment,
-                        {"render", scene.string(), "-o", picture.string(), "--spp", "8", "--quiet", "--set", shorter,
-                         "--set", coarser, "--set", "integrator.seed=1"},
-                        folder / "log.txt"),
-            0)
-      << file_text(folder / "log.txt");
+  const Outcome run = run_wale({"render", scene.string(), "-o", picture.string(), "--spp", "8", "--quiet", "--set",
+                                shorter, "--set", coarser, "--set", "integrator.seed=1"},
+                               environment, 300);
+  ASSERT_EQ(run.status, 0) << run.err;
   const Image image = read_image(picture);
   const Scene same_scene = read_scene(scene, {shorter, coarser});
 

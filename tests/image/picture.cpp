@@ -9,7 +9,6 @@
 #include "geom/base_mesh.h"
 #include "host/image.h"
 
-
 namespace wale::test {
 
 const Device& device() {
@@ -19,7 +18,7 @@ const Device& device() {
 
 Picture take_on(const Device& dev, const Scene& scene, int spp, unsigned seed, uint32_t pool, bool aovs) {
   const World world = build_world(scene, Loaders{[](const auto& file) { return read_mesh(file); },
-                                              [](const auto& file) { return read_image(file, true); }});
+                                                 [](const auto& file) { return read_image(file, true); }});
   const SceneDevice on_device(dev, world, local_stage(scene.integrator));
   IntegratorScene integrator = scene.integrator;
   integrator.seed = seed;
@@ -95,11 +94,12 @@ double student_p(double t, double dof) {
   const double x = dof / (dof + t * t), a = dof / 2, b = 0.5;
   const bool flip = x > (a + 1) / (a + b + 2);
   const double p = flip ? b : a, q = flip ? a : b, z = flip ? 1 - x : x;
-  const double front = std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + p * std::log(z) + q * std::log1p(-z)) / p;
+  const double front =
+      std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + p * std::log(z) + q * std::log1p(-z)) / p;
   double f = 1, c = 1, d = 0;
   for (int i = 0; i <= 400; ++i) {
     const int m = i / 2;
-    const double n = i == 0 ? 1
+    const double n = i == 0       ? 1
                      : i % 2 == 0 ? m * (q - m) * z / ((p + 2 * m - 1) * (p + 2 * m))
                                   : -(p + m) * (p + q + m) * z / ((p + 2 * m) * (p + 2 * m + 1));
     d = 1 / (1 + n * d);

@@ -1,26 +1,10 @@
 #include "tests/image/program.h"
 
 #include <fmt/format.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <cstring>
 
 namespace wale::test {
-namespace {
-std::string quoted(const std::string& word) {
-  std::string out = "'";
-  for (const char c : word) {
-    if (c == '\'')
-      out.append("'\\''");
-    else
-      out.push_back(c);
-  }
-  out.push_back('\'');
-  return out;
-}
-}  // namespace
-
 std::string everything_scene(int size, double wales) {
   return fmt::format(R"({{
   "wale": 1,
@@ -37,17 +21,6 @@ std::string everything_scene(int size, double wales) {
              {{"type": "environment", "radiance": [0.5, 0.6, 0.8], "up": [0, 0, 1]}}]
 }})",
                      size, wales);
-}
-
-int run_program(const std::vector<std::string>& environment, const std::vector<std::string>& arguments,
-                const std::filesystem::path& log) {
-  std::string command = "env";
-  for (const std::string& variable : environment) command.append(" ").append(quoted(variable));
-  command.append(" ").append(quoted(WALE_PROGRAM));
-  for (const std::string& argument : arguments) command.append(" ").append(quoted(argument));
-  command.append(" >").append(quoted(log.string())).append(" 2>&1");
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
 }
 
 size_t different_pixels(const Image& a, const Image& b) {

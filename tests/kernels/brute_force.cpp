@@ -139,7 +139,8 @@ OracleHit BruteForce::closest(const Ray& ray, long skip) const {
         if (ok) take(t0, l / r, 0);
         if (piece == 0)
           edge = std::min(s.cut_start ? glm::dot(y1, a) : glm::dot(y1, unit(t_before + a)),
-                          s.cut_end ? -glm::dot(y2, a) : -glm::dot(y2, unit(a + t_after))) / r;
+                          s.cut_end ? -glm::dot(y2, a) : -glm::dot(y2, unit(a + t_after))) /
+                 r;
       }
     }
     const auto sphere = [&](dvec3 centre, dvec3 ea, dvec3 eb, int which) {

@@ -1,4 +1,4 @@
-#include "run_program.h"
+#include "tests/run_program.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <sstream>
 #include <thread>
 
-#include "temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 extern char** environ;
 
