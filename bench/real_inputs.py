@@ -17,9 +17,9 @@ def scene(data, mesh, tile, camera, light, scale, color, plies=3):
         "venice": [{"type": "environment", "file": str(data / "envmaps/pmndrs/venice.exr"), "up": [0, 1, 0]}],
         # A small area light as in a photograph: in front (beside the camera) or behind the cloth.
         "front": [{"type": "quad", "position": camera["front"], "look_at": camera["look_at"], "width": 0.08,
-                   "height": 0.08, "radiance": 90}],
+                   "height": 0.08, "radiance": 400}],
         "back": [{"type": "quad", "position": camera["back"], "look_at": camera["look_at"], "width": 0.08,
-                  "height": 0.08, "radiance": 220}],
+                  "height": 0.08, "radiance": 600}],
     }[light]
     return {
         "wale": 1,
