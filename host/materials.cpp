@@ -21,14 +21,21 @@ constexpr double kSharpest = 0.001;  // radians: a highlight sharper than this w
 struct Preset {
   const char* name;
   double fresnel, beta, twist;
+  int fibres;
+  double packing, beta_tt, gamma_tt;  ///< the bundle itself, and light that goes through one fibre (degrees)
+  double density;                     ///< kg/m^3
   double tau_e, e_r, b, s_f0, e_f, d_f, s_b, d_b, v_c, v_e, n0, n1;
   Rgb color;  ///< transmission of one fibre: undyed yarn
 };
 constexpr std::array<Preset, 4> kPresets = {{
-    {"cotton", .045, 8, .39, 3.2, .32, 1.07, .53, .87, 42, 2.43, 57, .220, .135, 2.4, 5.1, {.965, .955, .930}},
-    {"wool", .047, 6, .35, 2.5, .34, 0.43, .58, .94, 24, 3.00, -57, .163, .057, 1.3, 4.9, {.930, .895, .820}},
-    {"silk", .050, 3, .09, 3.7, .32, 0.58, .52, 1.00, 26, 3.00, -57, .120, .040, 2.2, 7.1, {.970, .950, .900}},
-    {"polyester", .055, 4, .16, 3.0, .34, 0.42, .54, .98, 20, 3.00, -57, .139, .039, 1.1, 6.2, {.960, .960, .960}},
+    {"cotton", .045, 8,   .39, 75,   .50, 20,   35,   1540, 3.2, .32,
+     1.07,     .53,  .87, 42,  2.43, 57,  .220, .135, 2.4,  5.1, {.965, .955, .930}},
+    {"wool", .047, 6,   .35, 60,   .40, 12,   28,   1310, 2.5, .34,
+     0.43,   .58,  .94, 24,  3.00, -57, .163, .057, 1.3,  4.9, {.930, .895, .820}},
+    {"silk", .050, 3,    .09, 120,  .50, 8,    20,   1340, 3.7, .32,
+     0.58,   .52,  1.00, 26,  3.00, -57, .120, .040, 2.2,  7.1, {.970, .950, .900}},
+    {"polyester", .055, 4,   .16, 72,   .50, 10,   22,   1380, 3.0, .34,
+     0.42,        .54,  .98, 20,  3.00, -57, .139, .039, 1.1,  6.2, {.960, .960, .960}},
 }};
 
 void require_range(double value, double low, double high, const char* what) {
@@ -46,6 +53,15 @@ double fresnel_of(double ior) {
   return r * r;
 }
 
+const Preset& preset_of(const PlyAppearance& appearance) {
+  const auto preset =
+      std::find_if(kPresets.begin(), kPresets.end(), [&](const Preset& p) { return appearance.preset == p.name; });
+  if (preset == kPresets.end())
+    user_error("material: no ply preset is called '{}'; there are {}", appearance.preset,
+               fmt::join(ply_presets(), ", "));
+  return *preset;
+}
+
 }  // namespace
 
 const std::vector<std::string>& ply_presets() {
@@ -58,11 +74,7 @@ const std::vector<std::string>& ply_presets() {
 }
 
 WPlyMaterial ply_material(const PlyAppearance& appearance) {
-  const auto preset =
-      std::find_if(kPresets.begin(), kPresets.end(), [&](const Preset& p) { return appearance.preset == p.name; });
-  if (preset == kPresets.end())
-    user_error("material: no ply preset is called '{}'; there are {}", appearance.preset,
-               fmt::join(ply_presets(), ", "));
+  const Preset* preset = &preset_of(appearance);
   if (appearance.forward.has_value() != appearance.back.has_value())
     user_error("material: the body colours 'forward' and 'back' come together; '{}' is missing",
                appearance.forward ? "back" : "forward");
@@ -103,6 +115,30 @@ WPlyMaterial ply_material(const PlyAppearance& appearance) {
   m.n1 = float(preset->n1);
   return m;
 }
+
+FibreRecipe fibre_recipe(const PlyAppearance& appearance) {
+  const Preset& preset = preset_of(appearance);
+  FibreRecipe recipe;
+  recipe.fibres = preset.fibres;
+  recipe.packing = preset.packing;
+  recipe.twist = double(ply_material(appearance).tilt);
+  return recipe;
+}
+
+WFibreMaterial fibre_material(const PlyAppearance& appearance) {
+  const Preset& preset = preset_of(appearance);
+  const WPlyMaterial ply = ply_material(appearance);
+  WFibreMaterial m{};
+  m.reflect = {ply.f0, ply.f0, ply.f0, 0};
+  m.transmit = ply.fibre;
+  m.transmit.w = 0;
+  m.beta_r = ply.beta_r;
+  m.beta_tt = float(preset.beta_tt * kDegree);
+  m.gamma_tt = float(preset.gamma_tt * kDegree);
+  return m;
+}
+
+double fibre_density(const PlyAppearance& appearance) { return preset_of(appearance).density; }
 
 WSurfaceMaterial surface_material(const SurfaceAppearance& appearance) {
   WSurfaceMaterial m{};

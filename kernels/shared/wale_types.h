@@ -40,7 +40,7 @@ typedef int32_t w_int;
 #define W_LEAF_RADIUS 0   /* float, metres */
 #define W_LEAF_SEGMENT 1  /* segment id of lane 0: the vertex id of its start */
 #define W_LEAF_STRIDE 2   /* vertices per ply: segment id of lane (k,p) = SEGMENT + p*STRIDE + k */
-#define W_LEAF_MATERIAL 3 /* ply material */
+#define W_LEAF_MATERIAL 3 /* ply material, or W_MATERIAL_FIBRE | fibre material */
 #define W_LEAF_LAYOUT 4   /* n | lanes << 8 | S << 16 */
 #define W_LEAF_CUTS 5     /* bit l: lane l starts at a perpendicular cut (sphere joint or cap); bit 16+l: ends at one */
 #define W_LEAF_SPHERES 6  /* bit l: lane l owns the sphere at its start; bit 16+l: at its end */
@@ -53,8 +53,14 @@ typedef int32_t w_int;
 /* Hit code of a ply segment: leaf offset (16-byte units) << 4 | lane. */
 
 /* --- stored ply vertex: 7 floats, 28 bytes: position, frame normal, rest length along the full ply -----------------
- */
+   The length starts anywhere (a hash of the ply, so that neighbours do not look alike) and wraps at W_LENGTH_PERIOD ply
+   radii: a float then keeps the phase of the fibres to 1e-4 rad on any length of yarn. All that winds along a ply does so
+   a whole number of times in one period (w_turns_per_length). */
 #define W_VERTEX_WORDS 7
+#define W_LENGTH_PERIOD 4096.0f
+
+/* Marks a leaf whose curves are single fibres. */
+#define W_MATERIAL_FIBRE 0x80000000u
 
 /* --- triangle leaf (props, emissive meshes): header 4 words: first triangle, count, 0, 0; then v0 x,y,z [16],
    v1-v0 x,y,z [16], v2-v0 x,y,z [16]. Lane l is triangle first + l. -------------------------------------------------
@@ -99,6 +105,15 @@ typedef struct WPlyMaterial {
   float d_f, s_b, d_b, v_c;
   float v_e, n0, n1, tilt; /* tilt = tan of the angle between surface fibres and the ply axis, signed */
 } WPlyMaterial;
+
+/* Far-field scattering of one fibre (docs/appearance.md): R at the surface, TT through it. */
+typedef struct WFibreMaterial {
+  w_float4 reflect;  /* rgb reflectance at normal incidence (Schlick) */
+  w_float4 transmit; /* rgb colour of light that went through; w unused */
+  float beta_r, beta_tt; /* longitudinal widths, radians */
+  float gamma_tt;        /* azimuthal width of TT, radians */
+  float pad0;
+} WFibreMaterial;
 
 /* Materials of meshes. kind 0 diffuse, 1 diffuse under a rough dielectric coat (GGX). */
 typedef struct WSurfaceMaterial {
@@ -178,6 +193,7 @@ static_assert(sizeof(w_float4) == 16);
 static_assert(sizeof(WAnchor) == 32);
 static_assert(sizeof(WGrid) == 48);
 static_assert(sizeof(WPlyMaterial) == 112);
+static_assert(sizeof(WFibreMaterial) == 48);
 static_assert(sizeof(WSurfaceMaterial) == 48);
 static_assert(sizeof(WLight) == 48);
 static_assert(sizeof(WSphere) == 32);
