@@ -42,6 +42,15 @@ double body_mass(const Lobes& l, double a, double b) {
 
 }  // namespace
 
+PlyParameters ply_parameters(const WPlyMaterial& m) {
+  PlyParameters p;
+  p.tau_e = m.tau_e, p.e_r = m.e_r, p.e_r_h4 = m.e_r_h4;
+  p.b = m.b, p.s_f0 = m.s_f0, p.e_f = m.e_f, p.d_f = m.d_f, p.s_b = m.s_b, p.d_b = m.d_b;
+  p.v_c = m.v_c, p.v_e = m.v_e, p.n0 = m.n0, p.n1 = m.n1;
+  p.f0 = m.f0, p.twist = m.tilt;
+  return p;
+}
+
 double ply_uncollided(const PlyParameters& p, double h) {
   return std::exp(-2 * p.tau_e * std::sqrt(std::max(0.0, 1 - h * h)));
 }

@@ -2,6 +2,7 @@
 #include <array>
 
 #include "bench/goniometer/measure.h"
+#include "shared/wale_types.h"
 
 namespace wale {
 
@@ -18,6 +19,9 @@ struct PlyParameters {
   double forward_graze = 0;  ///< b grows by 1 + forward_graze (1 - cos th)^3
   double hits_shape = 2;     ///< of the colour law, which is omega (1 + (nbar - 1)(1 - omega)/shape)^-shape
 };
+
+/// What the renderer's material says.
+PlyParameters ply_parameters(const WPlyMaterial& material);
 
 using AngleHistogram = std::array<double, kAngleBins>;
 
