@@ -40,6 +40,16 @@ void print_residuals(const char* what, const PlyParameters& p, const Slices& s) 
       r.surface, r.color_rms, 100 * r.lost[0], 100 * r.lost[1], 100 * r.lost[2]);
 }
 
+/// Mean passages of the light that leaves forward and of the light that leaves back.
+std::pair<double, double> hits_by_side(const Measurement& m) {
+  const auto mean = [](const auto& histogram) {
+    double sum = 0, weight = 0;
+    for (size_t i = 0; i < kHitBins; ++i) sum += double(i) * histogram[i], weight += histogram[i];
+    return weight > 0 ? sum / weight : 0;
+  };
+  return {mean(m.hits_forward), mean(m.hits_back)};
+}
+
 /// Model beside measurement, for the plots.
 void write_comparison(const std::string& path, const std::string& name, const PlyParameters& p,
                       const std::vector<Slices>& all) {
@@ -80,7 +90,9 @@ void write_comparison(const std::string& path, const std::string& name, const Pl
 
 void fit_bundle(const Options& options) {
   const BundleMaterial bundle = read_bundle(options.bundle);
-  const double f0 = bundle.fibre.reflect.x;
+  PlyParameters given;
+  given.f0 = bundle.fibre.reflect.x;
+  given.twist = bundle.recipe.twist;
   const std::vector<double> thetas = {0, 30 * kDegree, 45 * kDegree, 60 * kDegree, 75 * kDegree};
   const auto seen = measure_slices(bundle.recipe, bundle.fibre, thetas, options.paths, options.seed);
   FibreRecipe other = bundle.recipe;
@@ -88,22 +100,28 @@ void fit_bundle(const Options& options) {
   const auto fresh = measure_slices(other, bundle.fibre, thetas, options.paths, options.seed + kOtherSections);
 
   fmt::print("## {}\n\n", bundle.name);
-  const PlyParameters normal = fit_ply({seen[0]}, f0, bundle.recipe.twist);
+  const PlyParameters normal = fit_ply({seen[0]}, given);
   print_parameters("normal incidence", normal);
   print_head();
   for (const Slices& s : fresh) print_residuals("normal incidence", normal, s);
-  PlyParameters proposed = normal;
-  proposed.body_tilt = 0.75;
-  proposed.forward_graze = 3;
-  proposed.hits_shape = 4;
-  for (const Slices& s : fresh) print_residuals("same, tilt .75, graze 3, shape 4", proposed, s);
+  PlyParameters extended = given;
+  extended.body_tilt = 0.75;
+  extended.forward_graze = 3;
+  extended.hits_shape = 4;
+  extended = fit_ply({seen[0]}, extended);
+  for (const Slices& s : fresh) print_residuals("normal incidence, tilted body", extended, s);
   if (options.refit) {
-    for (size_t i = 1; i < thetas.size(); ++i)
-      print_residuals("refitted there", fit_ply({seen[i]}, f0, bundle.recipe.twist), fresh[i]);
-    const PlyParameters joint = fit_ply(seen, f0, bundle.recipe.twist);
+    for (size_t i = 1; i < thetas.size(); ++i) print_residuals("refitted there", fit_ply({seen[i]}, given), fresh[i]);
+    const PlyParameters joint = fit_ply(seen, given);
     for (const Slices& s : fresh) print_residuals("fitted to all", joint, s);
   }
-  fmt::print("\n{} paths for each offset and sign, measured anew on other cross-sections\n\n", options.paths);
+  print_parameters("\ntilted body (body_tilt .75, forward_graze 3, hits_shape 4), normal incidence", extended);
+  fmt::print("\nPassages through fibres, light leaving forward and back:");
+  for (const Slices& s : fresh) {
+    const auto [forward, back] = hits_by_side(s.whole);
+    fmt::print(" {:.2f} {:.2f} at {:.0f} degrees;", forward, back, s.theta / kDegree);
+  }
+  fmt::print("\n\n{} paths for each offset and sign, measured anew on other cross-sections\n\n", options.paths);
   if (options.output.empty()) return;
   std::filesystem::create_directories(options.output);
   const std::string stem = options.output + "/" + bundle.name;

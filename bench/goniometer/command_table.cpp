@@ -9,9 +9,47 @@
 
 #include "bench/goniometer/commands.h"
 #include "bench/goniometer/measure.h"
+#include "bench/goniometer/ply_model.h"
 #include "bench/goniometer/published.h"
 
 namespace wale {
+namespace {
+
+/// First reflections alone: albedo E_R = R1 / ((1 - T0) F0) and total variation from the ply's cosine lobe about the
+/// normal, for fibres that reflect evenly in azimuth and for smooth round ones.
+void print_first_surface(const Options& options) {
+  struct Row {
+    const char* bundle;
+    bool smooth;
+    const char* published;
+  };
+  fmt::print("\n| fibre reflection | bundle | published E_R at h = .05 / .5 / .85, TV | ours |\n|---|---|---|---|\n");
+  for (const Row row : {Row{"P_polyester", false, ".335 .385 .449, .09 .11 .14"},
+                        {"P_cotton", false, ".320 .362 .438, .06 .11 .16"},
+                        {"P_polyester", true, ".500 .536 .533, .07 .08 .10"},
+                        {"P_cotton", true, ".487 .502 .524, .04 .05 .06"}}) {
+    for (PublishedBundle p : published_bundles()) {
+      if (p.name != row.bundle) continue;
+      p.fibre.transmit = dvec3(0);
+      p.fibre.smooth = row.smooth;
+      std::string albedo, tv;
+      for (const double h : {.05, .5, .85}) {
+        const Measurement m = measure(p.recipe, p.fibre,
+                                      Incidence{.h_low = h,
+                                                .h_high = h,
+                                                .paths = 4 * options.paths,
+                                                .seed = options.seed,
+                                                .sections = options.sections});
+        albedo += fmt::format("{:.3f} ", m.surface[0].mean / ((1 - m.uncollided.mean) * p.fibre.reflect.x));
+        tv += fmt::format(" {:.2f}", total_variation(m.surface_phi, ply_surface_azimuth(h)));
+      }
+      fmt::print("| {} | {} | {} | {},{} |\n", row.smooth ? "smooth cylinder" : "even in azimuth", row.bundle,
+                 row.published, albedo, tv);
+    }
+  }
+}
+
+}  // namespace
 
 void print_table(const Options& options) {
   constexpr double kToDegrees = 180 / std::numbers::pi;
@@ -42,6 +80,7 @@ void print_table(const Options& options) {
                misses.empty() ? " none" : misses);
     std::fflush(stdout);
   }
+  print_first_surface(options);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   fmt::print("\n{} paths, {} sections a bundle, seed {}, {:.1f} s\n", options.paths, options.sections, options.seed,
              seconds.count());

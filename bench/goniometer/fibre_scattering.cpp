@@ -62,7 +62,9 @@ FibreEvent scatter(const FibreScattering& fibre, dvec3 axis, dvec3 w_i, PathRand
   event.weight = event.reflected ? f / choose_r : through / (1 - choose_r);
 
   double phi = 2 * kPi * random.uniform();
-  if (!event.reflected) {
+  if (event.reflected && fibre.smooth) {
+    phi = 2 * std::asin(phi / kPi - 1);
+  } else if (!event.reflected) {
     const double bend = fibre.gamma_tt * random.normal();
     if (std::abs(bend) < kPi) phi = kPi + bend;
   }

@@ -19,6 +19,7 @@ struct FibreScattering {
   dvec3 transmit{1};
   double beta_r = 0.14, beta_tt = 0.35, gamma_tt = 0.61;
   Longitudinal longitudinal = Longitudinal::d_eon;
+  bool smooth = false;  ///< R of a smooth round fibre, cos(phi/2)/4 in azimuth instead of 1/(2 pi)
 };
 
 /// A sampled event: unit direction away from the fibre, weight by which the light's colour changes (its mean over many

@@ -125,13 +125,13 @@ void fit_hits(const std::vector<Slices>& all, PlyParameters& p) {
 
 }  // namespace
 
-PlyParameters fit_ply(const std::vector<Slices>& slices, double f0, double twist) {
-  PlyParameters p;
-  p.f0 = f0;
-  p.twist = twist;
+PlyParameters fit_ply(const std::vector<Slices>& slices, const PlyParameters& given) {
+  PlyParameters p = given;
   p.tau_e = fit_uncollided(slices);
   fit_surface(slices, p);
+  p.body_tilt = 0;  // moves azimuths at normal incidence by less than .003, and costs a hundred times the time
   fit_azimuth(slices, p);
+  p.body_tilt = given.body_tilt;
   fit_inclination(slices, p);
   fit_hits(slices, p);
   return p;

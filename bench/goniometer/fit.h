@@ -37,7 +37,7 @@ struct Residuals {
 };
 Residuals residuals(const PlyParameters& p, const Slices& s);
 
-/// Parameters that fit all the slices together; f0 and twist as given.
-PlyParameters fit_ply(const std::vector<Slices>& slices, double f0, double twist);
+/// Parameters that fit all the slices together. Kept as given: f0, twist and what the renderer's model does not have.
+PlyParameters fit_ply(const std::vector<Slices>& slices, const PlyParameters& given);
 
 }  // namespace wale

@@ -76,6 +76,8 @@ void write_material(const std::string& path, const BundleMaterial& bundle, const
   const FibreRecipe& r = bundle.recipe;
   Json json;
   json["type"] = "ply";
+  if (const auto& presets = ply_presets(); std::find(presets.begin(), presets.end(), bundle.name) != presets.end())
+    json["preset"] = bundle.name;
   json["scattering"] = {{"optical_radius", rounded(p.tau_e)},
                         {"surface_share", rounded(p.e_r)},
                         {"surface_rim", rounded(p.e_r_h4)},

@@ -53,7 +53,8 @@ PlyOracle::PlyOracle(const WPlyMaterial& material, dvec3 t, dvec3 n, dvec3 wv) :
 
   const double f0 = m_.f0, fresnel = f0 + (1 - f0) * std::pow(1 - std::cos(theta_vf_), 5);
   const double reflected = std::clamp(fresnel * m_.e_r * (1 + m_.e_r_h4 * std::pow(h, 4)), 0.0, 1.0);
-  const double forward = std::exp(-m_.b * c), hits = m_.n0 + m_.n1 * c;
+  const double forward = std::exp(-m_.b * c);
+  const double hits = std::max(1.0, m_.n0 + double(m_.n1) * c);  // whatever collided met a fibre
   for (int k = 0; k < 3; ++k) {
     const double omega = fresnel + (1 - fresnel) * rgb(m_.fibre)[k];
     const double body = omega * std::pow(1 + (hits - 1) / 2 * (1 - omega), -2);
