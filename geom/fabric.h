@@ -16,6 +16,9 @@ struct FabricScale {
   dvec2 gauge{0, 0};    ///< wales and courses per metre; a zero follows from the tile's aspect
 };
 
+/// How the fibres of a ply show: not at all; by maps as KNIT21 has them; by maps; or as curves of their own.
+enum class FabricDetail { none, paper, maps, fibres };
+
 struct FabricSpec {
   std::string name;
   FabricScale scale;
@@ -25,6 +28,7 @@ struct FabricSpec {
   double ply_radius = 0;     ///< metres in the cloth; 0 = as many touching circles as fill the yarn
   double height_offset = 0;  ///< metres along the base normal
   double tolerance = 0.05;   ///< ply radii
+  FabricDetail detail = FabricDetail::maps;
   double patches_per_cell = 12;  ///< wanted size of a UV cell
 };
 

@@ -17,6 +17,8 @@ std::string Features::options() const {
   define(spheres, "W_HAS_SPHERES");
   define(environment, "W_HAS_ENVIRONMENT");
   define(lights, "W_HAS_LIGHTS");
+  define(detail, "W_HAS_DETAIL");
+  define(paper_lobes, "W_PAPER_LOBES");
   define(aovs, "W_AOVS");
   return out;
 }
@@ -34,6 +36,8 @@ Features analyse(const World& world, const IntegratorScene& integrator, bool aov
   f.spheres = !world.spheres.empty();
   f.environment = world.environment.radiance.w != 0;
   f.lights = !world.lights.lights.empty() && integrator.light_sampling != "bsdf";
+  f.detail = f.plies && world.fibres.any();
+  f.paper_lobes = f.plies && integrator.ply_lobes == "paper";
   f.aovs = aovs;
   f.local_stage = local_stage(integrator);
   f.lanes = integrator.lanes ? integrator.lanes : device_lanes;
@@ -59,6 +63,11 @@ std::vector<Reason> explain(const World& world, const IntegratorScene& integrato
        f.lights                              ? "lights: " + lights
        : integrator.light_sampling == "bsdf" ? "integrator.light_sampling is \"bsdf\""
                                              : "no light to sample"},
+      {"fibre detail", f.detail,
+       f.detail  ? "fabrics.detail is \"maps\" or \"paper\""
+       : f.plies ? "fabrics.detail is \"none\""
+                 : "no fabric in the scene"},
+      {"Lambert ply lobes", f.paper_lobes, "integrator.ply_lobes is \"" + integrator.ply_lobes + "\""},
       {"feature images", f.aovs, f.aovs ? "an .exr is written" : "only .png is written"},
       {"local stage " + integrator.local_stage, f.plies, f.plies ? "integrator.local_stage" : "no fabric in the scene"},
       {fmt::format("{} lanes", f.lanes), true, integrator.lanes ? "integrator.lanes" : "width of the device's vectors"},

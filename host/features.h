@@ -13,6 +13,8 @@ struct IntegratorScene;
 struct Features {
   bool plies = false, triangles = false, spheres = false;
   bool environment = false, lights = false;  ///< lights: something is sampled by next-event estimation
+  bool detail = false;        ///< fibres show on plies, by maps
+  bool paper_lobes = false;   ///< bodies of plies are Lambert lobes
   bool aovs = false;
   LocalStage local_stage = LocalStage::exact;
   int lanes = 1;

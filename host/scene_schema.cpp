@@ -42,6 +42,8 @@ Type integrator() {
       {"max_depth", count(0, 65536), "scattering events per path; 0 = no limit", "0"},
       {"russian_roulette_depth", count(0, 65536), "scattering events before Russian roulette starts", "4"},
       {"light_sampling", word({"mis", "light", "bsdf"}), "how direct light is sampled", "mis"},
+      {"ply_lobes", word({"full", "paper"}), "how a ply scatters: the measured lobes, or Lambert lobes as in papers",
+       "full"},
       {"local_stage", word({"exact", "cell", "cell+ring"}), "which cells a ray visits (KNIT21 Algorithm 2 is cell)",
        "exact"},
       {"lanes", one_of({0, 1, 8, 16}), "width of explicit vectors; 0 = from the device", "0"},
@@ -136,6 +138,7 @@ Type fabric() {
           {"yarn", yarn, "plies of the yarn", "{}"},
           {"height_offset", length(kAnyLength), "along the normal of the base mesh", "0"},
           {"tolerance", number({1e-4, 1}), "of the ply curves, in ply radii", "0.05"},
+          {"detail", word({"none", "paper", "maps"}), "how the fibres of a ply show", "maps"},
           {"material", text(), "name of a ply material; absent = wool"},
       },
       {{{"repeats", "gauge", "uv_metres"}, true}});

@@ -24,6 +24,12 @@ void set_args(cl::Kernel& kernel, cl_uint first, const Args&... args) {
   (kernel.setArg(index++, args), ...);
 }
 
+/// Width of a pixel on what the camera sees: x metres, and y metres more per metre of distance.
+cl_float2 pixel_width(const WCamera& camera) {
+  const float film = 2 * camera.half_height / float(camera.height);
+  return camera.kind == 1 ? cl_float2{{film, 0}} : cl_float2{{0, film}};
+}
+
 }  // namespace
 
 Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Features& features, const WCamera& camera,
@@ -99,7 +105,14 @@ void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
   if (kernels_.contains("shade_ply")) {
     auto& k = kernel("shade_ply");
     next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1)));
-    set_args(k, next, scene_.vertices(), scene_.ply_materials(), aov_.cl(), ply_list_.cl(), queue_counts_.cl(), kHits);
+    set_args(k, next, scene_.vertices(), scene_.ply_materials());
+    next += 2;
+    if (features_.detail) {
+      set_args(k, next, scene_.fibre_details(), scene_.fibre_offsets(), scene_.fibre_candidates());
+      set_args(k, next + 3, pixel_width(camera_));
+      next += 4;
+    }
+    set_args(k, next, aov_.cl(), ply_list_.cl(), queue_counts_.cl(), kHits);
   }
   if (kernels_.contains("shade_surface")) {
     auto& k = kernel("shade_surface");

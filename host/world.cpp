@@ -72,7 +72,9 @@ class Builder {
       for (const auto& p : mesh.position) bounds_.add(p), fabric_bounds_.add(p);
       world_.fabrics.push_back(knit_fabric(std::move(mesh), pattern, fabric.spec));
       world_.fabric_material.push_back(uint32_t(world_.ply_materials.size()));
-      world_.ply_materials.push_back(ply_material(scene_.materials.at(size_t(fabric.material)).yarn));
+      const PlyAppearance& look = scene_.materials.at(size_t(fabric.material)).yarn;
+      world_.ply_materials.push_back(ply_material(look));
+      world_.fibres.add(fibre_recipe(look), world_.fabrics.back().ply_radius, fabric.spec.detail);
       if (progress_) progress_("knit", double(world_.fabrics.size()) / double(scene_.fabrics.size()));
     }
   }

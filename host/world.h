@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geom/fabric.h"
+#include "host/fibre_tables.h"
 #include "host/image.h"
 #include "host/light_tables.h"
 #include "host/scene.h"
@@ -26,6 +27,7 @@ struct World {
   std::vector<MeshReport> fabric_mesh_reports;
   std::vector<WPlyMaterial> ply_materials;
   std::vector<uint32_t> fabric_material;  ///< per fabric, into ply_materials
+  FibreTables fibres;                     ///< detail of every ply material
   std::vector<float> triangles;           ///< W_TRIANGLE_WORDS per triangle, see stages/shade_surface.cl
   std::vector<WSphere> spheres;
   std::vector<WSurfaceMaterial> surface_materials;
