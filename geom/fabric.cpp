@@ -79,7 +79,7 @@ Fabric knit_fabric(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spec
                  static_cast<double>(cells));
     fabric.grids.push_back(grid);
     if (!chart_map.knitted) continue;
-    YarnCutter cutter(fabric, c, chart_map, spec.height_offset, uv);
+    YarnCutter cutter(fabric, c, chart_map, spec, uv);
     knit_flat(pattern, partners, map.yarn, chart_map.scale, chart_map.rect, [&](FlatYarn&& yarn) { cutter.add(yarn); });
   }
   if (fabric.runs.empty()) user_error("fabric '{}': no yarn lies on the cloth; give a finer scale", spec.name);

@@ -5,6 +5,7 @@
 
 #include "geom/base_mesh.h"
 #include "geom/charts.h"
+#include "geom/fibre_section.h"
 #include "geom/flat_knit.h"
 
 namespace wale {
@@ -30,6 +31,7 @@ struct FabricSpec {
   double tolerance = 0.05;   ///< ply radii
   FabricDetail detail = FabricDetail::maps;
   double patches_per_cell = 12;  ///< wanted size of a UV cell
+  FibreRecipe fibres;            ///< what its plies are made of
 };
 
 /// One yarn, cut to its chart: `plies` polylines of `count` vertices each, ply p at first_vertex + p*count.
@@ -46,7 +48,7 @@ struct Anchor {
   float b1 = 0, b2 = 0;
   float height = 0;              ///< metres along the normal
   float nx = 0, ny = 0, nz = 0;  ///< frame normal in the flat knit
-  float length = 0;              ///< rest length along the full ply, metres
+  float length = 0;              ///< rest length along the full ply, metres, wrapped: see geom/stored_length.h
 };
 
 /// A run of `intervals` consecutive segments of all plies of one yarn: the leaf of the tree.

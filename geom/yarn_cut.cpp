@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geom/mesh_edges.h"
+#include "geom/stored_length.h"
 #include "geom/warp.h"
 
 namespace wale {
@@ -15,14 +16,9 @@ constexpr double kJump = 3;
 
 }  // namespace
 
-YarnCutter::YarnCutter(Fabric& fabric, uint32_t chart, const ChartMap& map, double height_offset,
+YarnCutter::YarnCutter(Fabric& fabric, uint32_t chart, const ChartMap& map, const FabricSpec& spec,
                        std::vector<dvec2>& uv)
-    : fabric_(fabric),
-      chart_(chart),
-      map_(map),
-      height_offset_(height_offset),
-      uv_(uv),
-      locator_(fabric.mesh, fabric.charts[chart]) {}
+    : fabric_(fabric), chart_(chart), map_(map), spec_(spec), uv_(uv), locator_(fabric.mesh, fabric.charts[chart]) {}
 
 YarnCutter::Sample YarnCutter::locate_sample(dvec3 centre) const {
   Sample sample;
@@ -113,6 +109,8 @@ void YarnCutter::add_run(const FlatYarn& yarn, size_t begin, size_t count, bool 
   for (size_t p = 0; p < plies; ++p) {
     const double* length = yarn.length.data() + p * total;
     const double lap_length = yarn.closed ? length[total - 2] - length[1] : 0;
+    const StoredLength stored =
+        stored_length(run.yarn, static_cast<uint32_t>(p), fabric_.ply_radius, spec_.fibres.twist, lap_length);
     for (size_t i = 0; i < count; ++i) {
       // Ghosts take the very anchor of the sample they repeat, so that the ends meet to the last bit.
       size_t k = begin + i;
@@ -125,7 +123,7 @@ void YarnCutter::add_run(const FlatYarn& yarn, size_t begin, size_t count, bool 
       const size_t vertex = p * total + k;
       const dvec2 uv = map_.uv_per_metre * dvec2(yarn.position[vertex]);
       Anchor anchor = anchor_of(yarn, vertex, samples_[k], uv);
-      anchor.length = static_cast<float>(length[k] + laps * lap_length);
+      anchor.length = stored.at(length[k] + laps * lap_length);
       fabric_.anchors.push_back(anchor);
       uv_.push_back(uv + laps * lap);
     }
@@ -149,7 +147,7 @@ Anchor YarnCutter::anchor_of(const FlatYarn& yarn, size_t vertex, const Sample& 
   anchor.triangle = at.triangle;
   anchor.b1 = static_cast<float>(at.b1);
   anchor.b2 = static_cast<float>(at.b2);
-  anchor.height = static_cast<float>(yarn.position[vertex].z + height_offset_);
+  anchor.height = static_cast<float>(yarn.position[vertex].z + spec_.height_offset);
   anchor.nx = static_cast<float>(normal.x);
   anchor.ny = static_cast<float>(normal.y);
   anchor.nz = static_cast<float>(normal.z);

@@ -8,7 +8,7 @@ namespace wale {
 /// stitch of its border stays. Appends to the fabric's runs, anchors and counters, and to `uv` per vertex.
 class YarnCutter {
  public:
-  YarnCutter(Fabric& fabric, uint32_t chart, const ChartMap& map, double height_offset, std::vector<dvec2>& uv);
+  YarnCutter(Fabric& fabric, uint32_t chart, const ChartMap& map, const FabricSpec& spec, std::vector<dvec2>& uv);
   void add(const FlatYarn& yarn);
 
  private:
@@ -30,7 +30,7 @@ class YarnCutter {
   Fabric& fabric_;
   const uint32_t chart_;
   const ChartMap& map_;
-  const double height_offset_;
+  const FabricSpec& spec_;
   std::vector<dvec2>& uv_;
   const ChartLocator locator_;
   std::vector<Sample> samples_;

@@ -67,10 +67,12 @@ class Builder {
       require_uv(mesh);
       transform_mesh(mesh, fabric.transform);
       const Pattern pattern = load_pattern(fabric.pattern);
-      refuse_if_too_large(mesh, pattern, fabric.spec);
+      FabricSpec spec = fabric.spec;
+      spec.fibres = fibre_recipe(scene_.materials.at(size_t(fabric.material)).yarn);
+      refuse_if_too_large(mesh, pattern, spec);
       world_.fabric_mesh_reports.push_back(validate(mesh));
       for (const auto& p : mesh.position) bounds_.add(p), fabric_bounds_.add(p);
-      world_.fabrics.push_back(knit_fabric(std::move(mesh), pattern, fabric.spec));
+      world_.fabrics.push_back(knit_fabric(std::move(mesh), pattern, spec));
       world_.fabric_material.push_back(uint32_t(world_.ply_materials.size()));
       const PlyAppearance& look = scene_.materials.at(size_t(fabric.material)).yarn;
       world_.ply_materials.push_back(ply_material(look));

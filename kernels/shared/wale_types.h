@@ -54,8 +54,8 @@ typedef int32_t w_int;
 
 /* --- stored ply vertex: 7 floats, 28 bytes: position, frame normal, rest length along the full ply -----------------
    The length starts anywhere (a hash of the ply, so that neighbours do not look alike) and wraps at W_LENGTH_PERIOD ply
-   radii: a float then keeps the phase of the fibres to 1e-4 rad on any length of yarn. All that winds along a ply does so
-   a whole number of times in one period (w_turns_per_length). */
+   radii: a float then keeps the phase of the fibres to 1e-3 rad on any length of yarn. All that winds along a ply does so
+   a whole number of times in one period (appearance/fibre_phase.clh). */
 #define W_VERTEX_WORDS 7
 #define W_LENGTH_PERIOD 4096.0f
 
