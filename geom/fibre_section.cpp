@@ -55,9 +55,8 @@ class Placer {
   /// Uniform in the disc that centres may lie in, kept with probability p(R) relative to its largest value p(0).
   Disc draw() {
     for (;;) {
-      const double r = std::sqrt(uniform()), angle = kTwoPi * uniform();
-      if (uniform() * density(0) <= density(r))
-        return {(1 - radius_) * r * std::cos(angle), (1 - radius_) * r * std::sin(angle)};
+      const double r = (1 - radius_) * std::sqrt(uniform()), angle = kTwoPi * uniform();
+      if (uniform() * density(0) <= density(r)) return {r * std::cos(angle), r * std::sin(angle)};
     }
   }
 

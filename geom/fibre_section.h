@@ -9,7 +9,7 @@ namespace wale {
 struct FibreRecipe {
   int fibres = 75;            ///< 1 to 4096
   double packing = 0.5;       ///< share of the ply's section that is fibre, (0, 0.7]: fibre radius sqrt(packing/fibres)
-  double radial_beta = 0;     ///< density over the radius, Zhao et al. 2016 section 4.2:
+  double radial_beta = 0;     ///< density at R ply radii from the axis, Zhao et al. 2016 section 4.2:
   double radial_epsilon = 0;  ///<   p(R) = (1 - 2 epsilon) ((e - e^R)/(e - 1))^beta + epsilon; beta = 0: uniform
   double twist = 0;           ///< tangent of the angle between fibres on the surface and the axis, signed
   double migration_min = 1;   ///< fibres wander between this share of their distance and all of it; 1 = they do not

@@ -16,27 +16,34 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kSharpest = 0.001;  // radians: a highlight sharper than this would be noise
 
-// One row per preset: fitted to bundles of dielectric fibres by a virtual goniometer (docs/appearance.md). Angles in
-// degrees, variances in rad^2, twist = tangent of the surface fibres' angle to the axis.
+// One row per preset: bundles of dielectric fibres measured and fitted by bench/goniometer at normal incidence
+// (docs/appearance.md). Angles in degrees, logistic widths in radians, variances in rad^2, twist = tangent of the
+// surface fibres' angle to the axis.
 struct Preset {
   const char* name;
   double fresnel, beta, twist;
   int fibres;
   double packing, beta_tt, gamma_tt;  ///< the bundle itself, and light that goes through one fibre (degrees)
   double density;                     ///< kg/m^3
-  double tau_e, e_r, b, s_f0, e_f, d_f, s_b, d_b, v_c, v_e, n0, n1;
+  double tau_e, e_r, e_r_h4, b, s_f0, e_f, d_f, s_b, d_b, v_c, v_e, n0, n1;
   Rgb color;  ///< transmission of one fibre: undyed yarn
 };
-constexpr std::array<Preset, 4> kPresets = {{
-    {"cotton", .045, 8,   .39, 75,   .50, 20,   35,   1540, 3.2, .32,
-     1.07,     .53,  .87, 42,  2.43, 57,  .220, .135, 2.4,  5.1, {.965, .955, .930}},
-    {"wool", .047, 6,   .35, 60,   .40, 12,   28,   1310, 2.5, .34,
-     0.43,   .58,  .94, 24,  3.00, -57, .163, .057, 1.3,  4.9, {.930, .895, .820}},
-    {"silk", .050, 3,    .09, 120,  .50, 8,    20,   1340, 3.7, .32,
-     0.58,   .52,  1.00, 26,  3.00, -57, .120, .040, 2.2,  7.1, {.970, .950, .900}},
-    {"polyester", .055, 4,   .16, 72,   .50, 10,   22,   1380, 3.0, .34,
-     0.42,        .54,  .98, 20,  3.00, -57, .139, .039, 1.1,  6.2, {.960, .960, .960}},
+// clang-format off
+constexpr std::array<Preset, 6> kPresets = {{
+    {"cotton",    .0450, 8, .39,  75, .50, 20, 35, 1540,
+     2.98, .348, .37, .791, .697, 1.14, 38.4, 2.54, -39.4, .611, .123, 1.65, 6.08, {.965, .955, .930}},
+    {"wool",      .0470, 6, .35,  60, .40, 12, 28, 1310,
+     2.48, .342, .52, .423, .614, 1.12, 22.8, 3.00, -68.8, .240, .059, 1.01, 5.39, {.930, .895, .820}},
+    {"silk",      .0500, 3, .09, 120, .50,  8, 20, 1340,
+     3.37, .340, .41, .535, .577, 1.15, 22.6, 3.00, -68.8, .159, .035, 1.42, 8.44, {.970, .950, .900}},
+    {"polyester", .0550, 4, .16,  72, .50, 10, 22, 1380,
+     2.96, .351, .39, .434, .572, 1.09, 20.0, 3.00, -68.8, .194, .044, 1.23, 6.40, {.960, .960, .960}},
+    {"acrylic",   .0413, 5, .25,  80, .45, 12, 25, 1170,
+     2.84, .345, .44, .448, .616, 1.16, 23.1, 3.00, -68.8, .274, .058, 1.14, 6.57, {.965, .965, .965}},
+    {"mohair",    .0465, 4, .20,  36, .25, 10, 24, 1310,
+     1.82, .354, .87, .150, .420,  .75,  9.9, 3.00, -68.8, .112, .024,  .53, 3.44, {.955, .925, .860}},
 }};
+// clang-format on
 
 void require_range(double value, double low, double high, const char* what) {
   if (!(value >= low && value <= high))
@@ -102,7 +109,7 @@ WPlyMaterial ply_material(const PlyAppearance& appearance) {
     m.tilt = float(std::tan(*appearance.fibre_twist));
   }
   m.e_r = float(preset->e_r);
-  m.e_r_h4 = 0.6f;  // the fibres reflect uniformly in azimuth: their share grows towards the rim
+  m.e_r_h4 = float(preset->e_r_h4);
   m.b = float(preset->b);
   m.s_f0 = float(preset->s_f0);
   m.e_f = float(preset->e_f);

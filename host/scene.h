@@ -34,7 +34,7 @@ struct PatternSource {
 
 /// Appearance of plies: a preset, then what the scene overrides. Colours are scene-linear Rec. 709 in [0,1].
 struct PlyAppearance {
-  std::string preset = "wool";       ///< cotton, wool, silk, polyester
+  std::string preset = "wool";       ///< cotton, wool, silk, polyester, acrylic, mohair
   std::optional<Rgb> color;          ///< fibre colour C_f
   std::optional<Rgb> forward, back;  ///< body colours directly (both or none)
   std::optional<double> roughness;   ///< beta_R, radians

@@ -54,7 +54,8 @@ Type integrator() {
 
 Type material() {
   const auto ply = object({
-      {"preset", word({"cotton", "wool", "silk", "polyester"}), "appearance to start from", "wool"},
+      {"preset", word({"cotton", "wool", "silk", "polyester", "acrylic", "mohair"}), "appearance to start from",
+       "wool"},
       {"color", color(), "fibre colour"},
       {"reflect", color(), "body colour seen from the lit side; with transmit, instead of color"},
       {"transmit", color(), "body colour of light that comes through; with reflect, instead of color"},

@@ -11,14 +11,14 @@ namespace wale {
 namespace {
 
 TEST(Materials, PresetsAreBoundedAndDifferent) {
-  EXPECT_EQ(ply_presets(), (std::vector<std::string>{"cotton", "wool", "silk", "polyester"}));
+  EXPECT_EQ(ply_presets(), (std::vector<std::string>{"cotton", "wool", "silk", "polyester", "acrylic", "mohair"}));
   for (const std::string& name : ply_presets()) {
     PlyAppearance a;
     a.preset = name;
     const WPlyMaterial m = ply_material(a);
-    EXPECT_GT(m.tau_e, 2);
+    EXPECT_GT(m.tau_e, 1.5);
     EXPECT_GT(m.v_c, m.v_e);
-    EXPECT_GT(m.v_e, 0.03);
+    EXPECT_GT(m.v_e, 0.02);
     EXPECT_EQ(m.fibre.w, 0);
     EXPECT_LT(m.fibre.x, 1);
   }

@@ -87,7 +87,7 @@ TEST_P(PlyBsdf, WhiteFibresLoseNothing) {
   Random random(6);
   for (int trial = 0; trial < 24; ++trial) {
     PlyAppearance a;
-    a.preset = ply_presets()[trial % 4];
+    a.preset = ply_presets()[trial % ply_presets().size()];
     a.color = Rgb{1, 1, 1};
     a.ior = random.uniform(1, 3);
     a.roughness = random.uniform(0.001, 1);
