@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geom/error.h"
+#include "geom/fibre_bundle.h"
 #include "geom/mesh_edges.h"
 
 namespace wale {
@@ -92,18 +93,25 @@ void lay_tiles(const Chart& chart, const FabricSpec& spec, ChartMap& map, ivec2&
   }
 }
 
+void set_ply_radius(const FabricSpec& spec, FabricMap& map) {
+  if (spec.ply_radius > map.yarn_radius)
+    user_error("fabric '{}': ply radius {:.4g} m does not fit into a yarn of radius {:.4g} m; give at most that, or 0",
+               spec.name, spec.ply_radius, map.yarn_radius);
+  map.yarn.ply_radius = spec.ply_radius;
+  map.yarn.helix_radius = spec.plies == 1 ? 0 : map.yarn_radius - spec.ply_radius;
+}
+
 void set_yarn(const Pattern& pattern, const FabricSpec& spec, double z_scale, FabricMap& map) {
   map.yarn_radius = pattern.yarn_radius * z_scale * spec.thickness;
   map.yarn.plies = spec.plies;
   map.yarn.tolerance = spec.tolerance;
   map.yarn.twist = spec.twist_pitch == 0 ? 0 : 1 / (spec.twist_pitch * map.yarn_radius);
   fill_yarn(map.yarn, map.yarn_radius);
-  if (spec.ply_radius == 0) return;
-  if (spec.ply_radius > map.yarn_radius)
-    user_error("fabric '{}': ply radius {:.4g} m does not fit into a yarn of radius {:.4g} m; give at most that, or 0",
-               spec.name, spec.ply_radius, map.yarn_radius);
-  map.yarn.ply_radius = spec.ply_radius;
-  map.yarn.helix_radius = spec.plies == 1 ? 0 : map.yarn_radius - spec.ply_radius;
+  if (spec.ply_radius > 0) set_ply_radius(spec, map);
+  if (spec.detail != Detail::fibres) return;
+  // Everything is sampled as finely as the fibres need it: samples of the ply are samples of its fibres.
+  map.yarn.tolerance = std::min(spec.tolerance, kFibreTolerance * fibre_radius(spec.fibres));
+  map.yarn.winding = winding_curvature(spec.fibres, map.yarn.ply_radius);
 }
 
 }  // namespace
@@ -179,7 +187,8 @@ size_t estimate_segments(const BaseMesh& mesh, const Pattern& pattern, const Fab
     const dvec2 margin = chart.half_stitch * chart.uv_per_metre * (1.0 - glm::sign(dvec2(chart.rect.wrap)));
     const double strip = 2 * (extent.x * margin.y + extent.y * margin.x);
     const double tiles = (chart_uv_area(mesh, charts[c]) + strip) / (chart.tile_uv.x * chart.tile_uv.y);
-    segments += tiles * static_cast<double>(samples_per_tile(pattern, partners, map.yarn, chart.scale)) * spec.plies;
+    const int curves = spec.plies * (spec.detail == Detail::fibres ? spec.fibres.fibres : 1);
+    segments += tiles * static_cast<double>(samples_per_tile(pattern, partners, map.yarn, chart.scale)) * curves;
   }
   return static_cast<size_t>(std::min(segments, 1e18));
 }

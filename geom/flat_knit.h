@@ -14,6 +14,7 @@ struct YarnSpec {
   double helix_radius = 0;  ///< metres from the yarn axis to a ply axis (0 for one ply)
   double phase = 0;         ///< radians
   double tolerance = 0.02;  ///< largest distance of a ply polyline from its curve, in ply radii
+  double winding = -1;      ///< 1/m: curvature of explicit fibres about the ply, whose tolerance it then is; < 0: none
 };
 
 /// Ply and helix radius of n equal circles that fill a yarn of the given radius and touch their neighbours.

@@ -175,6 +175,13 @@ FabricScale scale_of(const JsonNode& node) {
   return scale;
 }
 
+Detail detail_of(const std::string& word) {
+  return word == "none"    ? Detail::none
+         : word == "paper" ? Detail::paper
+         : word == "maps"  ? Detail::maps
+                           : Detail::fibres;
+}
+
 FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index) {
   const std::string path = fmt::format("fabrics.{}", index);
   const JsonNode& yarn = node["yarn"];
@@ -187,6 +194,7 @@ FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index) {
   fabric.spec.ply_radius = number_of(yarn, "ply_radius");
   fabric.spec.height_offset = number_of(node, "height_offset");
   fabric.spec.tolerance = number_of(node, "tolerance");
+  fabric.spec.detail = detail_of(node["detail"].text);
   fabric.mesh = mesh_of(node["mesh"]);
   fabric.transform = transform_of(node["transform"]);
   fabric.pattern = pattern_of(node["pattern"]);

@@ -137,6 +137,8 @@ Type fabric() {
           {"height_offset", length(kAnyLength), "along the normal of the base mesh", "0"},
           {"tolerance", number({1e-4, 1}), "of the ply curves, in ply radii", "0.05"},
           {"material", text(), "name of a ply material; absent = wool"},
+          {"detail", word({"none", "paper", "maps", "fibres"}),
+           "of plies: the tube, maps as KNIT21, maps, or explicit fibres", "maps"},
       },
       {{{"repeats", "gauge", "uv_metres"}, true}});
 }
