@@ -193,6 +193,12 @@ TileSamples sample_tile(const Pattern& pattern, const PartnerMap& partners, cons
   return tile;
 }
 
+double yarn_per_tile(const Pattern& pattern, const PartnerMap& partners, const YarnSpec& spec, dvec3 scale) {
+  double sum = 0;
+  for (const CycleSamples& cycle : sample_tile(pattern, partners, spec, scale).cycles) sum += cycle.length;
+  return sum;
+}
+
 long samples_per_tile(const Pattern& pattern, const PartnerMap& partners, const YarnSpec& spec, dvec3 scale) {
   long sum = 0;
   for (const CycleSamples& cycle : sample_tile(pattern, partners, spec, scale).cycles) sum += cycle.samples;

@@ -61,6 +61,7 @@ Fabric knit_fabric(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spec
   const PartnerMap partners = match_partners(pattern);
   fabric.ply_radius = map.yarn.ply_radius;
   fabric.yarn_radius = map.yarn_radius;
+  fabric.fibre_radius = map.flyaway_radius;
   std::unique_ptr<FibreBundle> bundle;
   if (spec.detail == Detail::fibres) {
     bundle = std::make_unique<FibreBundle>(spec.fibres, fabric.ply_radius);
@@ -93,7 +94,7 @@ Fabric knit_fabric(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spec
                  static_cast<double>(cells));
     fabric.grids.push_back(grid);
     if (!chart_map.knitted) continue;
-    YarnCutter cutter(fabric, c, chart_map, spec, bundle.get(), uv);
+    YarnCutter cutter(fabric, c, chart_map, spec, bundle.get(), map.flyaway_radius, uv);
     knit_flat(pattern, partners, map.yarn, chart_map.scale, chart_map.rect, [&](FlatYarn&& yarn) { cutter.add(yarn); });
   }
   if (fabric.runs.empty()) user_error("fabric '{}': no yarn lies on the cloth; give a finer scale", spec.name);

@@ -7,6 +7,7 @@
 #include "geom/charts.h"
 #include "geom/fibre_section.h"
 #include "geom/flat_knit.h"
+#include "geom/flyaways.h"
 
 namespace wale {
 
@@ -33,6 +34,7 @@ struct FabricSpec {
   double patches_per_cell = 12;  ///< wanted size of a UV cell
   Detail detail = Detail::maps;
   FibreRecipe fibres;  ///< what its plies are made of
+  FlyawaySpec flyaways;
 };
 
 /// Largest distance of an explicit fibre's polyline from its curve, fibre radii.
@@ -42,7 +44,7 @@ constexpr double kFibreTolerance = 0.25;
 constexpr uint32_t kFibreGroup = 4;
 
 /// Curves of one yarn, cut to its chart: `plies` polylines of `count` vertices each, curve p at first_vertex + p*count.
-/// All plies of the yarn, or a few neighbouring fibres of one of them.
+/// All plies of the yarn, a few neighbouring fibres of one of them, or one flyaway.
 struct PlyRun {
   enum class Kind : uint32_t { ply, fibre };
   uint32_t first_vertex = 0, count = 0;
@@ -105,6 +107,7 @@ struct Fabric {
   struct Report {
     size_t full_yarns = 0, runs = 0, segments = 0, vertices = 0;
     size_t plies = 0, fibres = 0;     ///< curves of each kind
+    size_t flyaways = 0;              ///< fibres that stand off a ply
     size_t samples_outside = 0;       ///< yarn samples beyond the half-stitch margin, not traced
     size_t samples_extrapolated = 0;  ///< in the margin
     size_t jumps_cut = 0;             ///< places where a yarn was cut because its chart folds back beside itself in UV

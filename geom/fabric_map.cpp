@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "geom/error.h"
 #include "geom/fibre_bundle.h"
@@ -22,6 +23,7 @@ void check_spec(const Pattern& pattern, const FabricSpec& spec) {
     user_error("fabric '{}': twist pitch {} yarn radii per turn cannot be spun; give 0 (none), or at least 2 in size",
                spec.name, spec.twist_pitch);
   positive("thickness", spec.thickness);
+  check_flyaways(spec.flyaways, spec.name.c_str());
   positive("tolerance", spec.tolerance);
   if (!(spec.ply_radius >= 0) || !std::isfinite(spec.ply_radius))
     user_error("fabric '{}': ply radius {}; give metres, or 0 to fill the yarn", spec.name, spec.ply_radius);
@@ -108,6 +110,9 @@ void set_yarn(const Pattern& pattern, const FabricSpec& spec, double z_scale, Fa
   map.yarn.twist = spec.twist_pitch == 0 ? 0 : 1 / (spec.twist_pitch * map.yarn_radius);
   fill_yarn(map.yarn, map.yarn_radius);
   if (spec.ply_radius > 0) set_ply_radius(spec, map);
+  if (spec.flyaways.any())
+    map.flyaway_radius =
+        spec.flyaways.radius > 0 ? spec.flyaways.radius : fibre_radius(spec.fibres) * map.yarn.ply_radius;
   if (spec.detail != Detail::fibres) return;
   // Everything is sampled as finely as the fibres need it: samples of the ply are samples of its fibres.
   map.yarn.tolerance = std::min(spec.tolerance, kFibreTolerance * fibre_radius(spec.fibres));
@@ -189,6 +194,11 @@ size_t estimate_segments(const BaseMesh& mesh, const Pattern& pattern, const Fab
     const double tiles = (chart_uv_area(mesh, charts[c]) + strip) / (chart.tile_uv.x * chart.tile_uv.y);
     const int curves = spec.plies * (spec.detail == Detail::fibres ? spec.fibres.fibres : 1);
     segments += tiles * static_cast<double>(samples_per_tile(pattern, partners, map.yarn, chart.scale)) * curves;
+    if (!spec.flyaways.any()) continue;
+    const double wound = std::hypot(1, 2 * std::numbers::pi * map.yarn.twist * map.yarn.helix_radius);
+    const double ply_metres = tiles * spec.plies * wound * yarn_per_tile(pattern, partners, map.yarn, chart.scale);
+    segments += ply_metres * (spec.flyaways.hairs + spec.flyaways.loops) *
+                segments_per_flyaway(spec.flyaways, map.yarn.ply_radius, kFibreTolerance * map.flyaway_radius);
   }
   return static_cast<size_t>(std::min(segments, 1e18));
 }

@@ -44,4 +44,7 @@ void knit_flat(const Pattern& pattern, const PartnerMap& partners, const YarnSpe
 /// Number of samples that one tile's yarns take under knit_flat; for size estimates before anything is allocated.
 long samples_per_tile(const Pattern& pattern, const PartnerMap& partners, const YarnSpec& spec, dvec3 scale);
 
+/// Metres of yarn in one tile.
+double yarn_per_tile(const Pattern& pattern, const PartnerMap& partners, const YarnSpec& spec, dvec3 scale);
+
 }  // namespace wale

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "geom/mesh_edges.h"
-#include "geom/ply_frames.h"
 #include "geom/stored_length.h"
 #include "geom/warp.h"
 
@@ -18,12 +17,13 @@ constexpr double kJump = 3;
 }  // namespace
 
 YarnCutter::YarnCutter(Fabric& fabric, uint32_t chart, const ChartMap& map, const FabricSpec& spec,
-                       const FibreBundle* bundle, std::vector<dvec2>& uv)
+                       const FibreBundle* bundle, double flyaway_radius, std::vector<dvec2>& uv)
     : fabric_(fabric),
       chart_(chart),
       map_(map),
       spec_(spec),
       bundle_(bundle),
+      flyaway_radius_(flyaway_radius),
       uv_(uv),
       locator_(fabric.mesh, fabric.charts[chart]) {
   if (bundle_) bundle_->groups(kFibreGroup, fibre_order_, fibre_groups_);
@@ -109,6 +109,7 @@ void YarnCutter::add_runs(const FlatYarn& yarn, const Stretch& stretch) {
     add_fibre_runs(yarn, stretch);
   else
     add_ply_run(yarn, stretch);
+  if (spec_.flyaways.any()) add_flyaways(yarn, stretch);
 }
 
 YarnCutter::Place YarnCutter::place_in(const FlatYarn& yarn, size_t sample) {
@@ -157,28 +158,6 @@ void YarnCutter::add_ply_run(const FlatYarn& yarn, const Stretch& stretch) {
       const Place place = place_in(yarn, stretch.begin + i);
       const size_t vertex = p * total + place.k;
       add_vertex(place, yarn.position[vertex], yarn.normal[vertex], stored.at(yarn.length[vertex] + place.laps * lap));
-    }
-  }
-}
-
-void YarnCutter::add_fibre_runs(const FlatYarn& yarn, const Stretch& stretch) {
-  const size_t total = yarn.centre.size(), plies = static_cast<size_t>(fabric_.plies);
-  for (size_t p = 0; p < plies; ++p) {
-    double lap = 0;
-    const StoredLength stored = length_of(yarn, p, lap);
-    const double migration = bundle_->migration_per_metre(stored.stretch * lap);
-    for (size_t g = 0; g + 1 < fibre_groups_.size(); ++g) {
-      begin_run(stretch, PlyRun::Kind::fibre, fibre_groups_[g + 1] - fibre_groups_[g], bundle_->fibre_radius());
-      for (size_t f = fibre_groups_[g]; f < fibre_groups_[g + 1]; ++f)
-        for (size_t i = 0; i < stretch.count; ++i) {
-          const Place place = place_in(yarn, stretch.begin + i);
-          const size_t vertex = p * total + place.k;
-          const double s = yarn.length[vertex];
-          const dvec2 at = bundle_->offset(fibre_order_[f], stored.unwrapped(s), migration);
-          const dvec3 normal = yarn.normal[vertex], side = glm::cross(ply_tangent(yarn, p, place.k), normal);
-          add_vertex(place, yarn.position[vertex] + at.x * normal + at.y * side, normal,
-                     stored.at(s + place.laps * lap));
-        }
     }
   }
 }

@@ -10,8 +10,9 @@ namespace wale {
 class YarnCutter {
  public:
   /// `bundle`: the fibres of its plies, where they are explicit.
+  /// `flyaway_radius`: metres, 0 where there are none.
   YarnCutter(Fabric& fabric, uint32_t chart, const ChartMap& map, const FabricSpec& spec, const FibreBundle* bundle,
-             std::vector<dvec2>& uv);
+             double flyaway_radius, std::vector<dvec2>& uv);
   void add(const FlatYarn& yarn);
 
  private:
@@ -41,6 +42,7 @@ class YarnCutter {
   void add_runs(const FlatYarn& yarn, const Stretch& stretch);
   void add_ply_run(const FlatYarn& yarn, const Stretch& stretch);
   void add_fibre_runs(const FlatYarn& yarn, const Stretch& stretch);
+  void add_flyaways(const FlatYarn& yarn, const Stretch& stretch);
   void begin_run(const Stretch& stretch, PlyRun::Kind kind, size_t curves, double radius);
   void add_vertex(const Place& place, const dvec3& position, const dvec3& normal, float length);
   Anchor anchor_of(const dvec3& position, const dvec3& normal, const Sample& centre, dvec2 uv) const;
@@ -50,6 +52,7 @@ class YarnCutter {
   const ChartMap& map_;
   const FabricSpec& spec_;
   const FibreBundle* bundle_;
+  const double flyaway_radius_;
   std::vector<dvec2>& uv_;
   const ChartLocator locator_;
   std::vector<Sample> samples_;

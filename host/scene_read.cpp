@@ -182,6 +182,12 @@ Detail detail_of(const std::string& word) {
                            : Detail::fibres;
 }
 
+FlyawaySpec flyaways_of(const JsonNode& node) {
+  constexpr double kPerMillimetre = 1e3;
+  return {kPerMillimetre * number_of(node, "hairs"), kPerMillimetre * number_of(node, "loops"),
+          number_of(node, "length"), number_of(node, "radius")};
+}
+
 FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index) {
   const std::string path = fmt::format("fabrics.{}", index);
   const JsonNode& yarn = node["yarn"];
@@ -194,6 +200,7 @@ FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index) {
   fabric.spec.ply_radius = number_of(yarn, "ply_radius");
   fabric.spec.height_offset = number_of(node, "height_offset");
   fabric.spec.tolerance = number_of(node, "tolerance");
+  fabric.spec.flyaways = flyaways_of(node["flyaways"]);
   fabric.spec.detail = detail_of(node["detail"].text);
   fabric.mesh = mesh_of(node["mesh"]);
   fabric.transform = transform_of(node["transform"]);
