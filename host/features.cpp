@@ -12,7 +12,8 @@ std::string Features::options() const {
   const auto define = [&](bool used, const char* name) {
     if (used) out += fmt::format(" -D{}", name);
   };
-  define(plies, "W_HAS_PLIES");
+  define(plies || fibres, "W_HAS_PLIES");
+  define(fibres, "W_HAS_FIBRES");
   define(triangles, "W_HAS_TRIANGLES");
   define(spheres, "W_HAS_SPHERES");
   define(environment, "W_HAS_ENVIRONMENT");
@@ -31,7 +32,10 @@ LocalStage local_stage(const IntegratorScene& integrator) {
 
 Features analyse(const World& world, const IntegratorScene& integrator, bool aovs, int device_lanes) {
   Features f;
-  for (const auto& fabric : world.fabrics) f.plies |= !fabric.patches.empty();
+  for (const auto& fabric : world.fabrics) {
+    f.plies |= fabric.report.plies > 0;
+    f.fibres |= fabric.report.fibres > 0;
+  }
   f.triangles = world.triangle_count() > 0;
   f.spheres = !world.spheres.empty();
   f.environment = world.environment.radiance.w != 0;
@@ -51,9 +55,21 @@ std::vector<Reason> explain(const World& world, const IntegratorScene& integrato
     return out;
   };
   const std::string lights = names(world.light_names, [](const auto& n) { return n; });
+  const auto with = [&](const auto& has) {
+    std::vector<std::string> chosen;
+    for (const auto& fabric : world.fabrics)
+      if (has(fabric)) chosen.push_back(fabric.name);
+    return names(chosen, [](const auto& n) { return n; });
+  };
+  const bool curves = f.plies || f.fibres;
   return {
       {"plies", f.plies,
-       f.plies ? "fabrics: " + names(world.fabrics, [](const auto& x) { return x.name; }) : "no fabric in the scene"},
+       f.plies    ? "fabrics: " + with([](const Fabric& x) { return x.report.plies > 0; })
+       : f.fibres ? "every fabric shows its fibres instead"
+                  : "no fabric in the scene"},
+      {"fibres", f.fibres,
+       f.fibres ? "detail \"fibres\" or flyaways of " + with([](const Fabric& x) { return x.report.fibres > 0; })
+                : "no fabric has detail \"fibres\" or flyaways"},
       {"triangles", f.triangles,
        f.triangles ? fmt::format("{} triangles of props and lights", world.triangle_count())
                    : "no mesh, ground or quad light"},
@@ -69,7 +85,7 @@ std::vector<Reason> explain(const World& world, const IntegratorScene& integrato
                  : "no fabric in the scene"},
       {"Lambert ply lobes", f.paper_lobes, "integrator.ply_lobes is \"" + integrator.ply_lobes + "\""},
       {"feature images", f.aovs, f.aovs ? "an .exr is written" : "only .png is written"},
-      {"local stage " + integrator.local_stage, f.plies, f.plies ? "integrator.local_stage" : "no fabric in the scene"},
+      {"local stage " + integrator.local_stage, curves, curves ? "integrator.local_stage" : "no fabric in the scene"},
       {fmt::format("{} lanes", f.lanes), true, integrator.lanes ? "integrator.lanes" : "width of the device's vectors"},
   };
 }

@@ -1,29 +1,30 @@
 #include "host/fibre_tables.h"
 
 #include <cmath>
-#include <numbers>
+
+#include "appearance/fibre_phase.clh"
 
 namespace wale {
 namespace {
 
-/// Turns per metre nearest to `angle` radians per ply radius.
+/// Turns per metre of what winds by `angle` radians per ply radius, a whole number per period.
 double whole_turns(double angle, double ply_radius) {
-  return std::round(angle * W_LENGTH_PERIOD / (2 * std::numbers::pi)) / (W_LENGTH_PERIOD * ply_radius);
+  return double(w_turns_per_period(float(angle))) / (double(W_LENGTH_PERIOD) * ply_radius);
 }
 
 }  // namespace
 
-void FibreTables::add(const FibreRecipe& wanted, double ply_radius, FabricDetail level) {
+void FibreTables::add(const FibreRecipe& wanted, double ply_radius, Detail level) {
   static_assert(W_DETAIL_BINS == FibreDetail::kBins);
   WFibreDetail out{};
-  if (level != FabricDetail::paper && level != FabricDetail::maps) {
+  if (level != Detail::paper && level != Detail::maps) {
     details.push_back(out);
     return;
   }
   FibreRecipe recipe = wanted;
-  if (level == FabricDetail::paper) recipe.migration_min = 1;
+  if (level == Detail::paper) recipe.migration_min = 1;
   const FibreDetail detail(recipe);
-  out.level = level == FabricDetail::paper ? W_DETAIL_PAPER : W_DETAIL_MAPS;
+  out.level = level == Detail::paper ? W_DETAIL_PAPER : W_DETAIL_MAPS;
   out.first_offset = w_uint(offsets.size());
   out.turns = float(whole_turns(recipe.twist, ply_radius));
   out.wander = float(whole_turns(recipe.twist * recipe.migration_rate, ply_radius));

@@ -17,7 +17,7 @@ struct FibreTables {
   bool any() const { return !candidates.empty(); }
   /// Appends the next ply material. ply_radius in metres; turns and migrations become whole numbers per
   /// W_LENGTH_PERIOD, where stored lengths wrap.
-  void add(const FibreRecipe& recipe, double ply_radius, FabricDetail level);
+  void add(const FibreRecipe& recipe, double ply_radius, Detail level);
 };
 
 }  // namespace wale

@@ -29,8 +29,8 @@ std::vector<float> corners_of(const std::vector<float>& triangles) {
 std::vector<FabricInput> inputs_of(const World& world) {
   std::vector<FabricInput> inputs;
   for (size_t i = 0; i < world.fabrics.size(); ++i)
-    inputs.push_back(
-        {&world.fabrics[i], world.fabric_material[i], world.ply_materials[world.fabric_material[i]].tau_e});
+    inputs.push_back({&world.fabrics[i], world.fabric_material[i], world.ply_materials[world.fabric_material[i]].tau_e,
+                      world.fabric_fibre_material[i]});
   return inputs;
 }
 
@@ -43,6 +43,7 @@ SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage st
   fibre_details_ = Buffer<WFibreDetail>(device, world.fibres.details);
   fibre_offsets_ = Buffer<uint32_t>(device, world.fibres.offsets);
   fibre_candidates_ = Buffer<w_float4>(device, world.fibres.candidates);
+  fibre_materials_ = Buffer<WFibreMaterial>(device, world.fibre_materials);
   triangles_ = Buffer<float>(device, in_order(world.triangles, tree.order));
   if (!tree.order.empty()) {
     tri_nodes_ = Buffer<uint32_t>(device, tree.tree.words);
@@ -114,7 +115,7 @@ std::map<std::string, uint64_t> SceneDevice::bytes() const {
           {"environment", env_texels_.bytes() + env_cdf_.bytes()},
           {"lights", lights_.bytes() + light_cdf_.bytes() + light_triangles_.bytes()},
           {"fibre detail", fibre_details_.bytes() + fibre_offsets_.bytes() + fibre_candidates_.bytes()},
-          {"materials", ply_materials_.bytes() + surface_materials_.bytes()},
+          {"materials", ply_materials_.bytes() + fibre_materials_.bytes() + surface_materials_.bytes()},
           {"UV cells", stage_ == LocalStage::exact
                            ? 0
                            : fabric_.cell_triangles.bytes() + fabric_.cell_segments.bytes() + fabric_.base_uv.bytes()}};

@@ -176,11 +176,17 @@ FabricScale scale_of(const JsonNode& node) {
   return scale;
 }
 
-FabricDetail detail_of(const std::string& word) {
-  return word == "none"    ? FabricDetail::none
-         : word == "paper" ? FabricDetail::paper
-         : word == "maps"  ? FabricDetail::maps
-                           : FabricDetail::fibres;
+Detail detail_of(const std::string& word) {
+  return word == "none"    ? Detail::none
+         : word == "paper" ? Detail::paper
+         : word == "maps"  ? Detail::maps
+                           : Detail::fibres;
+}
+
+FlyawaySpec flyaways_of(const JsonNode& node) {
+  constexpr double kPerMillimetre = 1e3;
+  return {kPerMillimetre * number_of(node, "hairs"), kPerMillimetre * number_of(node, "loops"),
+          number_of(node, "length"), number_of(node, "radius")};
 }
 
 FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index) {
@@ -195,6 +201,7 @@ FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index) {
   fabric.spec.ply_radius = number_of(yarn, "ply_radius");
   fabric.spec.height_offset = number_of(node, "height_offset");
   fabric.spec.tolerance = number_of(node, "tolerance");
+  fabric.spec.flyaways = flyaways_of(node["flyaways"]);
   fabric.spec.detail = detail_of(node["detail"].text);
   fabric.mesh = mesh_of(node["mesh"]);
   fabric.transform = transform_of(node["transform"]);

@@ -123,6 +123,12 @@ Type fabric() {
       {"thickness", number({0.01, 100}), "factor on the yarn radius of the tile", "1"},
       {"ply_radius", length(kLength), "in the cloth; 0 = touching circles that fill the yarn", "0"},
   });
+  const auto flyaways = object({
+      {"hairs", number({0, 1000}), "with one free end, per millimetre of ply", "0"},
+      {"loops", number({0, 1000}), "with both ends in the ply, per millimetre of ply", "0"},
+      {"length", length(kLength), "mean length of a hair; 0 = 2.2 ply radii, as measured", "0"},
+      {"radius", length(kLength), "of a flyaway; 0 = that of the ply's fibres", "0"},
+  });
   const auto gauge = object({
       {"wales", number({0.1, 10000}), "per 10 cm", "", true},
       {"courses", number({0.1, 10000}), "per 10 cm; absent = from the tile's aspect"},
@@ -139,8 +145,10 @@ Type fabric() {
           {"yarn", yarn, "plies of the yarn", "{}"},
           {"height_offset", length(kAnyLength), "along the normal of the base mesh", "0"},
           {"tolerance", number({1e-4, 1}), "of the ply curves, in ply radii", "0.05"},
-          {"detail", word({"none", "paper", "maps"}), "how the fibres of a ply show", "maps"},
           {"material", text(), "name of a ply material; absent = wool"},
+          {"flyaways", flyaways, "fibres that stand off the plies", "{}"},
+          {"detail", word({"none", "paper", "maps", "fibres"}),
+           "of plies: the tube, maps as KNIT21, maps, or explicit fibres", "maps"},
       },
       {{{"repeats", "gauge", "uv_metres"}, true}});
 }

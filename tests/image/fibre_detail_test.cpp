@@ -17,7 +17,7 @@ LightScene lamp(double z) {
   return light;
 }
 
-Scene swatch(const std::string& preset, double view, int pixels, double light_z, FabricDetail detail) {
+Scene swatch(const std::string& preset, double view, int pixels, double light_z, Detail detail) {
   Scene scene = empty_scene(view, pixels);
   add_fabric(scene, stockinette_pattern(), 0.03, 0.03, 3, preset, Rgb{0.97, 0.95, 0.9});
   scene.fabrics.back().spec.detail = detail;
@@ -30,8 +30,8 @@ Scene swatch(const std::string& preset, double view, int pixels, double light_z,
 TEST(FibreDetail, MeanOfASwatchStays) {
   for (const double z : {0.18, -0.18})
     for (const char* preset : {"wool", "silk"}) {
-      const auto off = mean_rgb(take(swatch(preset, 0.004, 48, z, FabricDetail::none), 96, 1).image);
-      const auto on = mean_rgb(take(swatch(preset, 0.004, 48, z, FabricDetail::maps), 96, 1).image);
+      const auto off = mean_rgb(take(swatch(preset, 0.004, 48, z, Detail::none), 96, 1).image);
+      const auto on = mean_rgb(take(swatch(preset, 0.004, 48, z, Detail::maps), 96, 1).image);
       for (int k = 0; k < 3; ++k) EXPECT_NEAR(on[k] / off[k], 1, 0.01) << preset << " light at " << z;
     }
 }
@@ -49,9 +49,9 @@ double rmse(const Image& a, const Image& b) {
 // Up close the picture differs by more than noise where fibres lie side by side; from afar it does not.
 TEST(FibreDetail, ShowsUpCloseOnly) {
   const auto contrast = [](double view) {
-    const Picture off = take(swatch("wool", view, 48, 0.18, FabricDetail::none), 128, 1);
-    const Picture again = take(swatch("wool", view, 48, 0.18, FabricDetail::none), 128, 2);
-    const Picture on = take(swatch("wool", view, 48, 0.18, FabricDetail::maps), 128, 2);
+    const Picture off = take(swatch("wool", view, 48, 0.18, Detail::none), 128, 1);
+    const Picture again = take(swatch("wool", view, 48, 0.18, Detail::none), 128, 2);
+    const Picture on = take(swatch("wool", view, 48, 0.18, Detail::maps), 128, 2);
     return rmse(on.image, off.image) / rmse(again.image, off.image);
   };
   // Measured 1.17 and 1.001: the noise of one picture is the unit.

@@ -51,8 +51,8 @@ TEST_P(FibreDetailKernel, AgreesWithReference) {
   constexpr size_t kCount = 40000;
   for (FibreRecipe recipe : {fibre_recipe({}), migrating()}) {
     FibreTables tables;
-    tables.add(fibre_recipe({}), kRadius, FabricDetail::maps);  // another material comes first
-    tables.add(recipe, kRadius, FabricDetail::maps);
+    tables.add(fibre_recipe({}), kRadius, Detail::maps);  // another material comes first
+    tables.add(recipe, kRadius, Detail::maps);
     // A whole number of turns and of migrations fits the period in which lengths wrap.
     recipe.migration_rate = double(tables.details[1].wander) / double(tables.details[1].turns);
     const FibreDetail reference(recipe);
@@ -121,7 +121,7 @@ TEST(FibreDetail, BinsMissNoFibre) {
 TEST(FibreDetail, FilterFadesToTheMean) {
   const KernelRunner runner(kKernel, false);
   FibreTables tables;
-  tables.add(fibre_recipe({}), 1e-4, FabricDetail::maps);
+  tables.add(fibre_recipe({}), 1e-4, Detail::maps);
   const auto& m = tables.details[0];
   const auto out =
       runner.run("filtered", 3, 4, runner.upload<WFibreDetail>({m}), runner.upload<float>({0.4f, 1.2f, 2.5f}));
