@@ -84,6 +84,16 @@ double polyline_error(const FineCycle& fine, double helix_radius, double twist) 
   return worst;
 }
 
+/// The same for fibres that wind about the ply with curvature w. On the outside of a bend of curvature k a fibre at
+/// radius R takes a step longer by 1 + k R and bends by k / (1 + k R): its sagitta is that of the ply times 1 + k R.
+double fibre_error(double ply_error, const FineCycle& fine, const YarnSpec& spec, double twist) {
+  double step = 0;
+  for (size_t i = kFine; i < fine.arc.size(); i += kFine) step = std::max(step, fine.arc[i] - fine.arc[i - kFine]);
+  step *= std::hypot(1, kTwoPi * twist * spec.helix_radius);
+  const double bend = 8 * ply_error / (step * step);
+  return ply_error * (1 + bend * spec.ply_radius) + spec.winding * step * step / 8;
+}
+
 /// Coarsest spacing that keeps the error, which falls with its square, within the tolerance.
 FineCycle trace_within(const YarnSpline& spline, const ArcLength& arc_length, const YarnSpec& spec, double twist,
                        double widest, const std::string& name) {
@@ -97,7 +107,8 @@ FineCycle trace_within(const YarnSpline& spline, const ArcLength& arc_length, co
       user_error("pattern '{}': a tolerance of {} ply radii asks for more than {} samples per yarn and tile", name,
                  spec.tolerance, kMostSamples);
     FineCycle fine = trace(spline, arc_length, spacing);
-    const double error = polyline_error(fine, spec.helix_radius, twist);
+    double error = polyline_error(fine, spec.helix_radius, twist);
+    if (spec.winding >= 0) error = fibre_error(error, fine, spec, twist);
     const double used = spacing;
     if (error <= tolerance) {
       best = std::move(fine);
@@ -180,6 +191,12 @@ TileSamples sample_tile(const Pattern& pattern, const PartnerMap& partners, cons
     tile.cycles.push_back(cycle);
   }
   return tile;
+}
+
+double yarn_per_tile(const Pattern& pattern, const PartnerMap& partners, const YarnSpec& spec, dvec3 scale) {
+  double sum = 0;
+  for (const CycleSamples& cycle : sample_tile(pattern, partners, spec, scale).cycles) sum += cycle.length;
+  return sum;
 }
 
 long samples_per_tile(const Pattern& pattern, const PartnerMap& partners, const YarnSpec& spec, dvec3 scale) {

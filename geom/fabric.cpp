@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "geom/error.h"
 #include "geom/fabric_map.h"
+#include "geom/fibre_bundle.h"
 #include "geom/uv_grid.h"
 #include "geom/yarn_cut.h"
 #include "shared/wale_types.h"
@@ -15,23 +17,30 @@ namespace {
 /// Above this a fabric's vertex numbers (32 bits) and the host's memory both give in.
 constexpr size_t kMaxSegments = 1'000'000'000;
 
-/// Cuts every run into patches of at most `lanes / plies` intervals, owned by the cell under their middle.
+/// Cuts every run into full patches, owned by the cell under their middle.
 void make_patches(Fabric& fabric, const std::vector<dvec2>& uv) {
-  const uint32_t plies = static_cast<uint32_t>(fabric.plies), most = W_LEAF_LANES / plies;
   for (uint32_t r = 0; r < fabric.runs.size(); ++r) {
     const PlyRun& run = fabric.runs[r];
+    const uint32_t most = W_LEAF_LANES / run.plies;
     const uint32_t begin = run.ghost_ends ? 1 : 0, end = run.count - (run.ghost_ends ? 2 : 1);
     for (uint32_t k = begin; k < end; k += most) {
       Patch patch{r, k, std::min(most, end - k), 0};
       dvec2 middle(0);
-      for (uint32_t p = 0; p < plies; ++p)
-        middle += uv[run.first_vertex + p * run.count + k + patch.intervals / 2] / static_cast<double>(plies);
+      for (uint32_t p = 0; p < run.plies; ++p)
+        middle += uv[run.first_vertex + p * run.count + k + patch.intervals / 2] / static_cast<double>(run.plies);
       patch.cell = cell_of(fabric.grids[run.chart], middle);
       fabric.patches.push_back(patch);
     }
   }
   std::stable_sort(fabric.patches.begin(), fabric.patches.end(),
                    [](const Patch& a, const Patch& b) { return a.cell < b.cell; });
+}
+
+/// Leaves that one sample interval of a yarn takes.
+double leaves_per_sample(const FabricSpec& spec) {
+  if (spec.detail != Detail::fibres) return 1.0 / (W_LEAF_LANES / spec.plies);
+  const double groups = std::ceil(double(spec.fibres.fibres) / kFibreGroup);
+  return spec.plies * groups / (W_LEAF_LANES / kFibreGroup);
 }
 
 }  // namespace
@@ -52,6 +61,12 @@ Fabric knit_fabric(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spec
   const PartnerMap partners = match_partners(pattern);
   fabric.ply_radius = map.yarn.ply_radius;
   fabric.yarn_radius = map.yarn_radius;
+  fabric.fibre_radius = map.flyaway_radius;
+  std::unique_ptr<FibreBundle> bundle;
+  if (spec.detail == Detail::fibres) {
+    bundle = std::make_unique<FibreBundle>(spec.fibres, fabric.ply_radius);
+    fabric.fibre_radius = bundle->fibre_radius();
+  }
   fabric.chart_of_triangle.resize(fabric.mesh.triangle.size());
   fabric.anchors.reserve(expected + expected / 8);
 
@@ -68,7 +83,7 @@ Fabric knit_fabric(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spec
     UvGrid grid;
     if (chart_map.knitted) {
       const long samples = samples_per_tile(pattern, partners, map.yarn, chart_map.scale);
-      const double patches_per_tile = static_cast<double>(samples) / (W_LEAF_LANES / spec.plies);
+      const double patches_per_tile = static_cast<double>(samples) * leaves_per_sample(spec);
       grid = make_grid(chart, chart_map, map.yarn_radius, patches_per_tile, spec.patches_per_cell);
       fabric.report.mirrored = fabric.report.mirrored || chart.mirrored;
     }
@@ -79,7 +94,7 @@ Fabric knit_fabric(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spec
                  static_cast<double>(cells));
     fabric.grids.push_back(grid);
     if (!chart_map.knitted) continue;
-    YarnCutter cutter(fabric, c, chart_map, spec.height_offset, uv);
+    YarnCutter cutter(fabric, c, chart_map, spec, bundle.get(), map.flyaway_radius, uv);
     knit_flat(pattern, partners, map.yarn, chart_map.scale, chart_map.rect, [&](FlatYarn&& yarn) { cutter.add(yarn); });
   }
   if (fabric.runs.empty()) user_error("fabric '{}': no yarn lies on the cloth; give a finer scale", spec.name);
@@ -90,9 +105,10 @@ Fabric knit_fabric(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spec
 
   Fabric::Report& report = fabric.report;
   report.runs = fabric.runs.size();
-  report.plies = fabric.runs.size() * static_cast<size_t>(spec.plies);
-  for (const PlyRun& run : fabric.runs)
-    report.segments += static_cast<size_t>(spec.plies) * (run.count - (run.ghost_ends ? 3 : 1));
+  for (const PlyRun& run : fabric.runs) {
+    (run.kind == PlyRun::Kind::ply ? report.plies : report.fibres) += run.plies;
+    report.segments += static_cast<size_t>(run.plies) * (run.count - (run.ghost_ends ? 3 : 1));
+  }
   report.vertices = fabric.anchors.size();
   report.worst_partner_distance = partners.worst_distance;
   report.snapped_repeats = map.snapped;

@@ -5,7 +5,9 @@
 
 #include "geom/base_mesh.h"
 #include "geom/charts.h"
+#include "geom/fibre_section.h"
 #include "geom/flat_knit.h"
+#include "geom/flyaways.h"
 
 namespace wale {
 
@@ -16,6 +18,10 @@ struct FabricScale {
   dvec2 gauge{0, 0};    ///< wales and courses per metre; a zero follows from the tile's aspect
 };
 
+/// How much of a ply is shown: nothing but the tube; as KNIT21, or maps of the fibres on it; the fibres themselves.
+/// The first three share one geometry and differ in shading alone.
+enum class Detail { none, paper, maps, fibres };
+
 struct FabricSpec {
   std::string name;
   FabricScale scale;
@@ -24,13 +30,27 @@ struct FabricSpec {
   double thickness = 1;      ///< factor on the yarn radius that the tile implies
   double ply_radius = 0;     ///< metres in the cloth; 0 = as many touching circles as fill the yarn
   double height_offset = 0;  ///< metres along the base normal
-  double tolerance = 0.05;   ///< ply radii
+  double tolerance = 0.05;   ///< ply radii; explicit fibres keep to kFibreTolerance instead where that is finer
   double patches_per_cell = 12;  ///< wanted size of a UV cell
+  Detail detail = Detail::maps;
+  FibreRecipe fibres;  ///< what its plies are made of
+  FlyawaySpec flyaways;
 };
 
-/// One yarn, cut to its chart: `plies` polylines of `count` vertices each, ply p at first_vertex + p*count.
+/// Largest distance of an explicit fibre's polyline from its curve, fibre radii.
+constexpr double kFibreTolerance = 0.25;
+
+/// Neighbouring fibres of one ply that share a leaf.
+constexpr uint32_t kFibreGroup = 4;
+
+/// Curves of one yarn, cut to its chart: `plies` polylines of `count` vertices each, curve p at first_vertex + p*count.
+/// All plies of the yarn, a few neighbouring fibres of one of them, or one flyaway.
 struct PlyRun {
+  enum class Kind : uint32_t { ply, fibre };
   uint32_t first_vertex = 0, count = 0;
+  uint32_t plies = 1;  ///< curves, 1 to 8
+  Kind kind = Kind::ply;
+  float radius = 0;   ///< of the curves, metres
   uint32_t yarn = 0;  ///< full yarn that it was cut from
   uint32_t chart = 0;
   bool ghost_ends = false;  ///< closed yarn: first and last segment are neighbours only, not traced, no caps
@@ -42,14 +62,14 @@ struct Anchor {
   float b1 = 0, b2 = 0;
   float height = 0;              ///< metres along the normal
   float nx = 0, ny = 0, nz = 0;  ///< frame normal in the flat knit
-  float length = 0;              ///< rest length along the full ply, metres
+  float length = 0;              ///< rest length along the full ply, metres, wrapped: see geom/stored_length.h
 };
 
-/// A run of `intervals` consecutive segments of all plies of one yarn: the leaf of the tree.
+/// `intervals` consecutive segments of all curves of one run: the leaf of the tree.
 struct Patch {
   uint32_t run = 0;
   uint32_t first = 0;      ///< first segment, counted inside the run
-  uint32_t intervals = 0;  ///< at most W_LEAF_LANES / plies
+  uint32_t intervals = 0;  ///< at most W_LEAF_LANES / the run's curves
   uint32_t cell = 0;       ///< owner
 };
 
@@ -73,6 +93,7 @@ struct Fabric {
   std::string name;
   int plies = 0;
   double ply_radius = 0, yarn_radius = 0;  ///< metres in the cloth
+  double fibre_radius = 0;                 ///< metres; 0 where no fibre is explicit
   BaseMesh mesh;
   std::vector<Chart> charts;
   std::vector<dvec2> uv_per_metre;  ///< per chart: UV = uv_per_metre * (x, y), (x, y) in the flat knit
@@ -84,7 +105,9 @@ struct Fabric {
   Csr cell_triangles;          ///< triangles that cover the cell (UV overlap)
   Csr cell_segments;           ///< segments that touch the cell: vertex ids of their starts
   struct Report {
-    size_t full_yarns = 0, runs = 0, plies = 0, segments = 0, vertices = 0;
+    size_t full_yarns = 0, runs = 0, segments = 0, vertices = 0;
+    size_t plies = 0, fibres = 0;     ///< curves of each kind
+    size_t flyaways = 0;              ///< fibres that stand off a ply
     size_t samples_outside = 0;       ///< yarn samples beyond the half-stitch margin, not traced
     size_t samples_extrapolated = 0;  ///< in the margin
     size_t jumps_cut = 0;             ///< places where a yarn was cut because its chart folds back beside itself in UV
@@ -96,7 +119,8 @@ struct Fabric {
   } report;
 };
 
-/// Ply segments that the fabric would have, to a few per cent; computed before anything is allocated.
+/// Segments that the fabric would have, of plies or of explicit fibres, to a few per cent; computed before anything is
+/// allocated.
 size_t estimate_segments(const BaseMesh& mesh, const Pattern& pattern, const FabricSpec& spec);
 
 /// Knits the pattern over the mesh: charts, scale, tiling and stitching, plies, cutting at borders (half a stitch past

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "geom/error.h"
+#include "geom/fibre_bundle.h"
 #include "geom/mesh_edges.h"
 
 namespace wale {
@@ -21,6 +23,7 @@ void check_spec(const Pattern& pattern, const FabricSpec& spec) {
     user_error("fabric '{}': twist pitch {} yarn radii per turn cannot be spun; give 0 (none), or at least 2 in size",
                spec.name, spec.twist_pitch);
   positive("thickness", spec.thickness);
+  check_flyaways(spec.flyaways, spec.name.c_str());
   positive("tolerance", spec.tolerance);
   if (!(spec.ply_radius >= 0) || !std::isfinite(spec.ply_radius))
     user_error("fabric '{}': ply radius {}; give metres, or 0 to fill the yarn", spec.name, spec.ply_radius);
@@ -92,18 +95,28 @@ void lay_tiles(const Chart& chart, const FabricSpec& spec, ChartMap& map, ivec2&
   }
 }
 
+void set_ply_radius(const FabricSpec& spec, FabricMap& map) {
+  if (spec.ply_radius > map.yarn_radius)
+    user_error("fabric '{}': ply radius {:.4g} m does not fit into a yarn of radius {:.4g} m; give at most that, or 0",
+               spec.name, spec.ply_radius, map.yarn_radius);
+  map.yarn.ply_radius = spec.ply_radius;
+  map.yarn.helix_radius = spec.plies == 1 ? 0 : map.yarn_radius - spec.ply_radius;
+}
+
 void set_yarn(const Pattern& pattern, const FabricSpec& spec, double z_scale, FabricMap& map) {
   map.yarn_radius = pattern.yarn_radius * z_scale * spec.thickness;
   map.yarn.plies = spec.plies;
   map.yarn.tolerance = spec.tolerance;
   map.yarn.twist = spec.twist_pitch == 0 ? 0 : 1 / (spec.twist_pitch * map.yarn_radius);
   fill_yarn(map.yarn, map.yarn_radius);
-  if (spec.ply_radius == 0) return;
-  if (spec.ply_radius > map.yarn_radius)
-    user_error("fabric '{}': ply radius {:.4g} m does not fit into a yarn of radius {:.4g} m; give at most that, or 0",
-               spec.name, spec.ply_radius, map.yarn_radius);
-  map.yarn.ply_radius = spec.ply_radius;
-  map.yarn.helix_radius = spec.plies == 1 ? 0 : map.yarn_radius - spec.ply_radius;
+  if (spec.ply_radius > 0) set_ply_radius(spec, map);
+  if (spec.flyaways.any())
+    map.flyaway_radius =
+        spec.flyaways.radius > 0 ? spec.flyaways.radius : fibre_radius(spec.fibres) * map.yarn.ply_radius;
+  if (spec.detail != Detail::fibres) return;
+  // Everything is sampled as finely as the fibres need it: samples of the ply are samples of its fibres.
+  map.yarn.tolerance = std::min(spec.tolerance, kFibreTolerance * fibre_radius(spec.fibres));
+  map.yarn.winding = winding_curvature(spec.fibres, map.yarn.ply_radius);
 }
 
 }  // namespace
@@ -179,7 +192,13 @@ size_t estimate_segments(const BaseMesh& mesh, const Pattern& pattern, const Fab
     const dvec2 margin = chart.half_stitch * chart.uv_per_metre * (1.0 - glm::sign(dvec2(chart.rect.wrap)));
     const double strip = 2 * (extent.x * margin.y + extent.y * margin.x);
     const double tiles = (chart_uv_area(mesh, charts[c]) + strip) / (chart.tile_uv.x * chart.tile_uv.y);
-    segments += tiles * static_cast<double>(samples_per_tile(pattern, partners, map.yarn, chart.scale)) * spec.plies;
+    const int curves = spec.plies * (spec.detail == Detail::fibres ? spec.fibres.fibres : 1);
+    segments += tiles * static_cast<double>(samples_per_tile(pattern, partners, map.yarn, chart.scale)) * curves;
+    if (!spec.flyaways.any()) continue;
+    const double wound = std::hypot(1, 2 * std::numbers::pi * map.yarn.twist * map.yarn.helix_radius);
+    const double ply_metres = tiles * spec.plies * wound * yarn_per_tile(pattern, partners, map.yarn, chart.scale);
+    segments += ply_metres * (spec.flyaways.hairs + spec.flyaways.loops) *
+                segments_per_flyaway(spec.flyaways, map.yarn.ply_radius, kFibreTolerance * map.flyaway_radius);
   }
   return static_cast<size_t>(std::min(segments, 1e18));
 }

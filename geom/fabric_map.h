@@ -19,8 +19,9 @@ struct ChartMap {
 /// The fabric's scale, worked out from one of its three keys.
 struct FabricMap {
   YarnSpec yarn;
-  double yarn_radius = 0;   ///< metres in the cloth, thickness included
-  dvec2 tile_metres{0, 0};  ///< mean over the charts, by area
+  double yarn_radius = 0;     ///< metres in the cloth, thickness included
+  double flyaway_radius = 0;  ///< metres; 0 without flyaways
+  dvec2 tile_metres{0, 0};    ///< mean over the charts, by area
   dvec2 stitch_metres{0, 0};
   std::vector<ChartMap> charts;
   std::vector<ivec2> snapped;  ///< per joined chart: whole tiles across the joins (0 where not joined)

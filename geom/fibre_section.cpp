@@ -114,10 +114,14 @@ void check(const FibreRecipe& r) {
 
 }  // namespace
 
-FibreSection make_fibre_section(const FibreRecipe& recipe) {
+double fibre_radius(const FibreRecipe& recipe) {
   check(recipe);
+  return std::sqrt(recipe.packing / recipe.fibres);
+}
+
+FibreSection make_fibre_section(const FibreRecipe& recipe) {
   FibreSection section;
-  section.fibre_radius = std::sqrt(recipe.packing / recipe.fibres);
+  section.fibre_radius = fibre_radius(recipe);
   Placer placer(recipe, section.fibre_radius);
   for (const Disc& d : placer.place())
     section.fibres.push_back({std::hypot(d.x, d.y), std::atan2(d.y, d.x), kTwoPi * placer.uniform()});

@@ -30,6 +30,9 @@ struct FibreSection {
   std::vector<Fibre> fibres;
 };
 
+/// Radius of each fibre, ply radii. Same errors as make_fibre_section.
+double fibre_radius(const FibreRecipe& recipe);
+
 /// Cross-section by rejection against p(R) and against overlap (Zhao et al. 2016, section 4.2), inside radius
 /// 1 - fibre radius; where darts find no more room the fibres are pushed apart. Deterministic for a seed. Throws a user
 /// error on counts, packings and densities out of range.

@@ -14,6 +14,7 @@ struct YarnSpec {
   double helix_radius = 0;  ///< metres from the yarn axis to a ply axis (0 for one ply)
   double phase = 0;         ///< radians
   double tolerance = 0.02;  ///< largest distance of a ply polyline from its curve, in ply radii
+  double winding = -1;      ///< 1/m: curvature of explicit fibres about the ply, whose tolerance it then is; < 0: none
 };
 
 /// Ply and helix radius of n equal circles that fill a yarn of the given radius and touch their neighbours.
@@ -42,5 +43,8 @@ void knit_flat(const Pattern& pattern, const PartnerMap& partners, const YarnSpe
 
 /// Number of samples that one tile's yarns take under knit_flat; for size estimates before anything is allocated.
 long samples_per_tile(const Pattern& pattern, const PartnerMap& partners, const YarnSpec& spec, dvec3 scale);
+
+/// Metres of yarn in one tile.
+double yarn_per_tile(const Pattern& pattern, const PartnerMap& partners, const YarnSpec& spec, dvec3 scale);
 
 }  // namespace wale

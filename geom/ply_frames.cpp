@@ -65,4 +65,12 @@ void frame_plies(FlatYarn& yarn, int plies) {
   }
 }
 
+dvec3 ply_tangent(const FlatYarn& yarn, size_t ply, size_t k) {
+  const size_t count = yarn.centre.size();
+  const dvec3* p = &yarn.position[ply * count];
+  const dvec3 before = k > 0 ? unit_or(p[k] - p[k - 1], dvec3(0)) : dvec3(0);
+  const dvec3 after = k + 1 < count ? unit_or(p[k + 1] - p[k], before) : dvec3(0);
+  return unit_or(before + after, glm::length(after) > 0 ? after : dvec3(1, 0, 0));
+}
+
 }  // namespace wale

@@ -9,4 +9,8 @@ namespace wale {
 /// samples agree with the samples that they repeat.
 void frame_plies(FlatYarn& yarn, int plies);
 
+/// Mean of the two unit edges at sample k of a ply, to which its frame normal is perpendicular; the edge at an open
+/// end.
+dvec3 ply_tangent(const FlatYarn& yarn, size_t ply, size_t k);
+
 }  // namespace wale

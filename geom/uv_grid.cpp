@@ -146,9 +146,9 @@ Csr list_segments(const Fabric& fabric, const std::vector<dvec2>& uv) {
   return compress(cell_count(fabric), [&](auto&& emit) {
     for (const PlyRun& run : fabric.runs) {
       const UvGrid& grid = fabric.grids[run.chart];
-      const dvec2 radius = fabric.ply_radius * fabric.uv_per_metre[run.chart];
+      const dvec2 radius = double(run.radius) * fabric.uv_per_metre[run.chart];
       const uint32_t begin = run.ghost_ends ? 1 : 0, end = run.count - (run.ghost_ends ? 2 : 1);
-      for (uint32_t p = 0; p < static_cast<uint32_t>(fabric.plies); ++p)
+      for (uint32_t p = 0; p < run.plies; ++p)
         for (uint32_t k = begin; k < end; ++k) {
           const uint32_t segment = run.first_vertex + p * run.count + k;
           const dvec2 a = uv[segment], b = uv[segment + 1];

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geom/mesh_edges.h"
+#include "geom/stored_length.h"
 #include "geom/warp.h"
 
 namespace wale {
@@ -15,14 +16,18 @@ constexpr double kJump = 3;
 
 }  // namespace
 
-YarnCutter::YarnCutter(Fabric& fabric, uint32_t chart, const ChartMap& map, double height_offset,
-                       std::vector<dvec2>& uv)
+YarnCutter::YarnCutter(Fabric& fabric, uint32_t chart, const ChartMap& map, const FabricSpec& spec,
+                       const FibreBundle* bundle, double flyaway_radius, std::vector<dvec2>& uv)
     : fabric_(fabric),
       chart_(chart),
       map_(map),
-      height_offset_(height_offset),
+      spec_(spec),
+      bundle_(bundle),
+      flyaway_radius_(flyaway_radius),
       uv_(uv),
-      locator_(fabric.mesh, fabric.charts[chart]) {}
+      locator_(fabric.mesh, fabric.charts[chart]) {
+  if (bundle_) bundle_->groups(kFibreGroup, fibre_order_, fibre_groups_);
+}
 
 YarnCutter::Sample YarnCutter::locate_sample(dvec3 centre) const {
   Sample sample;
@@ -58,7 +63,7 @@ void YarnCutter::add(const FlatYarn& yarn) {
   for (size_t k = first; k < first + count; ++k) samples_[k] = locate_sample(yarn.centre[k]);
 
   const auto own = [&](size_t i) -> Sample& { return samples_[first + i % count]; };
-  const dvec2 lap = yarn.closed ? map_.uv_per_metre * dvec2(yarn.centre[total - 2] - yarn.centre[1]) : dvec2(0);
+  lap_ = yarn.closed ? map_.uv_per_metre * dvec2(yarn.centre[total - 2] - yarn.centre[1]) : dvec2(0);
   bool whole = yarn.closed;
   size_t start = 0;  // where a closed yarn may be opened
   for (size_t i = 0; i < count; ++i) {
@@ -66,7 +71,7 @@ void YarnCutter::add(const FlatYarn& yarn) {
     const size_t before = i > 0 ? i - 1 : count - 1;
     if (i > 0 || yarn.closed) {
       Sample previous = own(before);
-      if (i == 0) previous.uv -= lap;
+      if (i == 0) previous.uv -= lap_;
       here.cut_before = here.kept && previous.kept && jumps(previous, here);
       fabric_.report.jumps_cut += here.cut_before;
     }
@@ -78,7 +83,7 @@ void YarnCutter::add(const FlatYarn& yarn) {
     fabric_.report.samples_extrapolated += here.kept && here.at.outside > 0;
   }
   if (whole) {
-    add_run(yarn, 0, total, true);
+    add_runs(yarn, {0, total, true});
     ++fabric_.report.full_yarns;
     return;
   }
@@ -91,7 +96,7 @@ void YarnCutter::add(const FlatYarn& yarn) {
     size_t end = i + 1;
     while (end < count && own(start + end).kept && !own(start + end).cut_before) ++end;
     if (end - i >= 2)
-      add_run(yarn, first + start + i, end - i, false);
+      add_runs(yarn, {first + start + i, end - i, false});
     else
       ++fabric_.report.samples_outside;  // a single sample makes no segment
     i = end;
@@ -99,41 +104,65 @@ void YarnCutter::add(const FlatYarn& yarn) {
   ++fabric_.report.full_yarns;
 }
 
-void YarnCutter::add_run(const FlatYarn& yarn, size_t begin, size_t count, bool ghost_ends) {
-  const size_t total = yarn.centre.size(), plies = static_cast<size_t>(fabric_.plies);
+void YarnCutter::add_runs(const FlatYarn& yarn, const Stretch& stretch) {
+  if (spec_.detail == Detail::fibres)
+    add_fibre_runs(yarn, stretch);
+  else
+    add_ply_run(yarn, stretch);
+  if (spec_.flyaways.any()) add_flyaways(yarn, stretch);
+}
+
+YarnCutter::Place YarnCutter::place_in(const FlatYarn& yarn, size_t sample) {
+  if (!yarn.closed) return {sample, 0};
+  const auto period = static_cast<ptrdiff_t>(yarn.centre.size()) - 3, from_one = static_cast<ptrdiff_t>(sample) - 1;
+  const double laps = std::floor(static_cast<double>(from_one) / static_cast<double>(period));
+  return {static_cast<size_t>(from_one - static_cast<ptrdiff_t>(laps) * period) + 1, laps};
+}
+
+StoredLength YarnCutter::length_of(const FlatYarn& yarn, size_t ply, double& lap) const {
+  const double* length = yarn.length.data() + ply * yarn.centre.size();
+  lap = yarn.closed ? length[yarn.centre.size() - 2] - length[1] : 0;
+  return stored_length(static_cast<uint32_t>(fabric_.report.full_yarns), static_cast<uint32_t>(ply), fabric_.ply_radius,
+                       spec_.fibres.twist, lap);
+}
+
+void YarnCutter::begin_run(const Stretch& stretch, PlyRun::Kind kind, size_t curves, double radius) {
   PlyRun run;
   run.first_vertex = static_cast<uint32_t>(fabric_.anchors.size());
-  run.count = static_cast<uint32_t>(count);
+  run.count = static_cast<uint32_t>(stretch.count);
+  run.plies = static_cast<uint32_t>(curves);
+  run.kind = kind;
+  run.radius = static_cast<float>(radius);
   run.yarn = static_cast<uint32_t>(fabric_.report.full_yarns);
   run.chart = chart_;
-  run.ghost_ends = ghost_ends;
-
-  const size_t period = yarn.closed ? total - 3 : total;
-  const dvec2 lap = yarn.closed ? map_.uv_per_metre * dvec2(yarn.centre[total - 2] - yarn.centre[1]) : dvec2(0);
-  for (size_t p = 0; p < plies; ++p) {
-    const double* length = yarn.length.data() + p * total;
-    const double lap_length = yarn.closed ? length[total - 2] - length[1] : 0;
-    for (size_t i = 0; i < count; ++i) {
-      // Ghosts take the very anchor of the sample they repeat, so that the ends meet to the last bit.
-      size_t k = begin + i;
-      double laps = 0;
-      if (yarn.closed) {
-        const ptrdiff_t from_one = static_cast<ptrdiff_t>(k) - 1;
-        laps = std::floor(static_cast<double>(from_one) / static_cast<double>(period));
-        k = static_cast<size_t>(from_one - static_cast<ptrdiff_t>(laps) * static_cast<ptrdiff_t>(period)) + 1;
-      }
-      const size_t vertex = p * total + k;
-      const dvec2 uv = map_.uv_per_metre * dvec2(yarn.position[vertex]);
-      Anchor anchor = anchor_of(yarn, vertex, samples_[k], uv);
-      anchor.length = static_cast<float>(length[k] + laps * lap_length);
-      fabric_.anchors.push_back(anchor);
-      uv_.push_back(uv + laps * lap);
-    }
-  }
+  run.ghost_ends = stretch.ghost_ends;
   fabric_.runs.push_back(run);
 }
 
-Anchor YarnCutter::anchor_of(const FlatYarn& yarn, size_t vertex, const Sample& centre, dvec2 uv) const {
+void YarnCutter::add_vertex(const Place& place, const dvec3& position, const dvec3& normal, float length) {
+  const dvec2 uv = map_.uv_per_metre * dvec2(position);
+  Anchor anchor = anchor_of(position, normal, samples_[place.k], uv);
+  anchor.length = length;
+  fabric_.anchors.push_back(anchor);
+  uv_.push_back(uv + place.laps * lap_);
+}
+
+// Ghosts take the very anchor of the sample they repeat, so that the ends meet to the last bit.
+void YarnCutter::add_ply_run(const FlatYarn& yarn, const Stretch& stretch) {
+  const size_t total = yarn.centre.size(), plies = static_cast<size_t>(fabric_.plies);
+  begin_run(stretch, PlyRun::Kind::ply, plies, fabric_.ply_radius);
+  for (size_t p = 0; p < plies; ++p) {
+    double lap = 0;
+    const StoredLength stored = length_of(yarn, p, lap);
+    for (size_t i = 0; i < stretch.count; ++i) {
+      const Place place = place_in(yarn, stretch.begin + i);
+      const size_t vertex = p * total + place.k;
+      add_vertex(place, yarn.position[vertex], yarn.normal[vertex], stored.at(yarn.length[vertex] + place.laps * lap));
+    }
+  }
+}
+
+Anchor YarnCutter::anchor_of(const dvec3& position, const dvec3& normal, const Sample& centre, dvec2 uv) const {
   const double reach = map_.half_stitch + 2 * fabric_.yarn_radius;
   ChartPoint at;
   if (!locator_.locate(uv, reach, map_.metric, at)) {
@@ -144,12 +173,11 @@ Anchor YarnCutter::anchor_of(const FlatYarn& yarn, size_t vertex, const Sample& 
     const double offset = std::max(glm::length(guess - centre.point), glm::length((uv - centre.uv) * map_.metric));
     if (glm::length(found - guess) > kJump * offset) at = beside;
   }
-  const dvec3 normal = yarn.normal[vertex];
   Anchor anchor;
   anchor.triangle = at.triangle;
   anchor.b1 = static_cast<float>(at.b1);
   anchor.b2 = static_cast<float>(at.b2);
-  anchor.height = static_cast<float>(yarn.position[vertex].z + height_offset_);
+  anchor.height = static_cast<float>(position.z + spec_.height_offset);
   anchor.nx = static_cast<float>(normal.x);
   anchor.ny = static_cast<float>(normal.y);
   anchor.nz = static_cast<float>(normal.z);

@@ -1,6 +1,7 @@
 #pragma once
 #include "geom/fabric.h"
 #include "geom/fabric_map.h"
+#include "geom/fibre_bundle.h"
 
 namespace wale {
 
@@ -8,7 +9,10 @@ namespace wale {
 /// stitch of its border stays. Appends to the fabric's runs, anchors and counters, and to `uv` per vertex.
 class YarnCutter {
  public:
-  YarnCutter(Fabric& fabric, uint32_t chart, const ChartMap& map, double height_offset, std::vector<dvec2>& uv);
+  /// `bundle`: the fibres of its plies, where they are explicit.
+  /// `flyaway_radius`: metres, 0 where there are none.
+  YarnCutter(Fabric& fabric, uint32_t chart, const ChartMap& map, const FabricSpec& spec, const FibreBundle* bundle,
+             double flyaway_radius, std::vector<dvec2>& uv);
   void add(const FlatYarn& yarn);
 
  private:
@@ -23,17 +27,37 @@ class YarnCutter {
   Sample locate_sample(dvec3 centre) const;
   bool jumps(const Sample& a, const Sample& b) const;
   ChartPoint extrapolate(const Sample& from, dvec2 uv) const;
-  /// Appends the samples begin, begin+1, ... of a yarn; a closed yarn's continue past its end by whole laps.
-  void add_run(const FlatYarn& yarn, size_t begin, size_t count, bool ghost_ends);
-  Anchor anchor_of(const FlatYarn& yarn, size_t vertex, const Sample& centre, dvec2 uv) const;
+  /// Samples begin, begin+1, ... of a yarn; a closed yarn's continue past its end by whole laps.
+  struct Stretch {
+    size_t begin, count;
+    bool ghost_ends;
+  };
+  /// Sample of the yarn that a stretch's sample repeats, and the laps in between.
+  struct Place {
+    size_t k;
+    double laps;
+  };
+  static Place place_in(const FlatYarn& yarn, size_t sample);
+  StoredLength length_of(const FlatYarn& yarn, size_t ply, double& lap) const;
+  void add_runs(const FlatYarn& yarn, const Stretch& stretch);
+  void add_ply_run(const FlatYarn& yarn, const Stretch& stretch);
+  void add_fibre_runs(const FlatYarn& yarn, const Stretch& stretch);
+  void add_flyaways(const FlatYarn& yarn, const Stretch& stretch);
+  void begin_run(const Stretch& stretch, PlyRun::Kind kind, size_t curves, double radius);
+  void add_vertex(const Place& place, const dvec3& position, const dvec3& normal, float length);
+  Anchor anchor_of(const dvec3& position, const dvec3& normal, const Sample& centre, dvec2 uv) const;
 
   Fabric& fabric_;
   const uint32_t chart_;
   const ChartMap& map_;
-  const double height_offset_;
+  const FabricSpec& spec_;
+  const FibreBundle* bundle_;
+  const double flyaway_radius_;
   std::vector<dvec2>& uv_;
   const ChartLocator locator_;
   std::vector<Sample> samples_;
+  dvec2 lap_{0, 0};  ///< UV of one lap of a closed yarn
+  std::vector<uint32_t> fibre_order_, fibre_groups_;
 };
 
 }  // namespace wale

@@ -69,12 +69,13 @@ int run_export(const SceneArgs& args, const std::filesystem::path& output, const
   size_t first = 0;  // vertices of the fabrics follow one another
   for (const auto& fabric : world.fabrics) {
     for (const auto& run : fabric.runs)
-      for (int ply = 0; ply < fabric.plies; ++ply) {
+      for (uint32_t curve_number = 0; curve_number < run.plies; ++curve_number) {
         ExportCurve curve;
-        curve.radius = float(fabric.ply_radius);
+        curve.radius = run.radius;
         const uint32_t skip = run.ghost_ends ? 1 : 0;
         for (uint32_t k = skip; k + skip < run.count; ++k) {
-          const float* v = &vertices[(first + run.first_vertex + size_t(ply) * run.count + k) * W_VERTEX_WORDS];
+          const float* v =
+              &vertices[(first + run.first_vertex + size_t(curve_number) * run.count + k) * W_VERTEX_WORDS];
           curve.points.push_back(
               {float(v[0] + world.origin.x), float(v[1] + world.origin.y), float(v[2] + world.origin.z)});
         }

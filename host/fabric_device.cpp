@@ -53,7 +53,7 @@ void append(WarpInput& out, const Fabric& fabric, dvec3 origin) {
   }
   out.flags.resize(out.anchors.size(), 0);
   for (const PlyRun& run : fabric.runs)
-    for (int p = 0; p < fabric.plies; ++p) {
+    for (uint32_t p = 0; p < run.plies; ++p) {
       const size_t first = first_vertex + run.first_vertex + size_t(p) * run.count;
       if (run.count == 0) continue;
       out.flags[first] |= 1;
@@ -200,22 +200,27 @@ FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> i
   const double start = now();
   WarpInput warp_input;
   std::vector<PlyPatch> patches;
-  size_t plies = 0;
+  size_t curves = 0;
   for (uint32_t f = 0; f < inputs.size(); ++f) {
     const Fabric& fabric = *inputs[f].fabric;
     out.first_vertex.push_back(uint32_t(warp_input.anchors.size()));
     out.first_cell.push_back(uint32_t(out.cell_count));
     out.first_triangle.push_back(uint32_t(warp_input.triangles.size() / 3));
     append(warp_input, fabric, origin);
+    std::vector<uint32_t> first_curve;  // per run, over all fabrics
+    for (const PlyRun& run : fabric.runs) {
+      first_curve.push_back(uint32_t(curves));
+      curves += run.plies;
+    }
     for (const Patch& p : fabric.patches) {
       const PlyRun& run = fabric.runs[p.run];
-      patches.push_back({out.first_vertex[f] + run.first_vertex, run.count, p.first, p.intervals,
-                         uint32_t(fabric.plies), out.first_cell[f] + p.cell, f, inputs[f].material,
-                         uint32_t(plies + size_t(p.run) * fabric.plies), float(fabric.ply_radius), inputs[f].tau,
-                         run.ghost_ends});
-      out.segment_count += size_t(p.intervals) * fabric.plies;
+      const bool fibre = run.kind == PlyRun::Kind::fibre;
+      patches.push_back({out.first_vertex[f] + run.first_vertex, run.count, p.first, p.intervals, run.plies,
+                         out.first_cell[f] + p.cell, f,
+                         fibre ? W_MATERIAL_FIBRE | inputs[f].fibre_material : inputs[f].material, first_curve[p.run],
+                         run.radius, fibre ? -1.0f : inputs[f].tau, run.ghost_ends});
+      out.segment_count += size_t(p.intervals) * run.plies;
     }
-    plies += fabric.runs.size() * fabric.plies;
     out.cell_count += cells_of(fabric);
   }
   out.vertex_count = warp_input.anchors.size();

@@ -12,8 +12,9 @@ namespace wale {
 /// A fabric and what its plies are made of on the device.
 struct FabricInput {
   const Fabric* fabric = nullptr;
-  uint32_t material = 0;  ///< ply material
-  float tau = 0;          ///< effective optical radius of its plies; -1 or less = opaque
+  uint32_t material = 0;        ///< ply material
+  float tau = 0;                ///< effective optical radius of its plies; -1 or less = opaque
+  uint32_t fibre_material = 0;  ///< of its explicit fibres, which are opaque
 };
 
 /// How the plies that a ray meets are found: W_LOCAL_STAGE of the kernels.

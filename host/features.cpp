@@ -12,11 +12,14 @@ std::string Features::options() const {
   const auto define = [&](bool used, const char* name) {
     if (used) out += fmt::format(" -D{}", name);
   };
-  define(plies, "W_HAS_PLIES");
+  define(plies || fibres, "W_HAS_PLIES");
+  define(fibres, "W_HAS_FIBRES");
   define(triangles, "W_HAS_TRIANGLES");
   define(spheres, "W_HAS_SPHERES");
   define(environment, "W_HAS_ENVIRONMENT");
   define(lights, "W_HAS_LIGHTS");
+  define(detail, "W_HAS_DETAIL");
+  define(paper_lobes, "W_PAPER_LOBES");
   define(aovs, "W_AOVS");
   return out;
 }
@@ -29,11 +32,16 @@ LocalStage local_stage(const IntegratorScene& integrator) {
 
 Features analyse(const World& world, const IntegratorScene& integrator, bool aovs, int device_lanes) {
   Features f;
-  for (const auto& fabric : world.fabrics) f.plies |= !fabric.patches.empty();
+  for (const auto& fabric : world.fabrics) {
+    f.plies |= fabric.report.plies > 0;
+    f.fibres |= fabric.report.fibres > 0;
+  }
   f.triangles = world.triangle_count() > 0;
   f.spheres = !world.spheres.empty();
   f.environment = world.environment.radiance.w != 0;
   f.lights = !world.lights.lights.empty() && integrator.light_sampling != "bsdf";
+  f.detail = f.plies && world.fibres.any();
+  f.paper_lobes = f.plies && integrator.ply_lobes == "paper";
   f.aovs = aovs;
   f.local_stage = local_stage(integrator);
   f.lanes = integrator.lanes ? integrator.lanes : device_lanes;
@@ -47,9 +55,21 @@ std::vector<Reason> explain(const World& world, const IntegratorScene& integrato
     return out;
   };
   const std::string lights = names(world.light_names, [](const auto& n) { return n; });
+  const auto with = [&](const auto& has) {
+    std::vector<std::string> chosen;
+    for (const auto& fabric : world.fabrics)
+      if (has(fabric)) chosen.push_back(fabric.name);
+    return names(chosen, [](const auto& n) { return n; });
+  };
+  const bool curves = f.plies || f.fibres;
   return {
       {"plies", f.plies,
-       f.plies ? "fabrics: " + names(world.fabrics, [](const auto& x) { return x.name; }) : "no fabric in the scene"},
+       f.plies    ? "fabrics: " + with([](const Fabric& x) { return x.report.plies > 0; })
+       : f.fibres ? "every fabric shows its fibres instead"
+                  : "no fabric in the scene"},
+      {"fibres", f.fibres,
+       f.fibres ? "detail \"fibres\" or flyaways of " + with([](const Fabric& x) { return x.report.fibres > 0; })
+                : "no fabric has detail \"fibres\" or flyaways"},
       {"triangles", f.triangles,
        f.triangles ? fmt::format("{} triangles of props and lights", world.triangle_count())
                    : "no mesh, ground or quad light"},
@@ -59,8 +79,13 @@ std::vector<Reason> explain(const World& world, const IntegratorScene& integrato
        f.lights                              ? "lights: " + lights
        : integrator.light_sampling == "bsdf" ? "integrator.light_sampling is \"bsdf\""
                                              : "no light to sample"},
+      {"fibre detail", f.detail,
+       f.detail  ? "fabrics.detail is \"maps\" or \"paper\""
+       : f.plies ? "fabrics.detail is \"none\""
+                 : "no fabric in the scene"},
+      {"Lambert ply lobes", f.paper_lobes, "integrator.ply_lobes is \"" + integrator.ply_lobes + "\""},
       {"feature images", f.aovs, f.aovs ? "an .exr is written" : "only .png is written"},
-      {"local stage " + integrator.local_stage, f.plies, f.plies ? "integrator.local_stage" : "no fabric in the scene"},
+      {"local stage " + integrator.local_stage, curves, curves ? "integrator.local_stage" : "no fabric in the scene"},
       {fmt::format("{} lanes", f.lanes), true, integrator.lanes ? "integrator.lanes" : "width of the device's vectors"},
   };
 }

@@ -11,8 +11,11 @@ struct IntegratorScene;
 
 /// What a scene asks for. Structure that is absent is neither compiled, launched nor stored; values are run-time data.
 struct Features {
-  bool plies = false, triangles = false, spheres = false;
+  bool plies = false, fibres = false;  ///< curves shaded as plies, and as single fibres
+  bool triangles = false, spheres = false;
   bool environment = false, lights = false;  ///< lights: something is sampled by next-event estimation
+  bool detail = false;        ///< fibres show on plies, by maps
+  bool paper_lobes = false;   ///< bodies of plies are Lambert lobes
   bool aovs = false;
   LocalStage local_stage = LocalStage::exact;
   int lanes = 1;

@@ -17,7 +17,7 @@ Image develop(const FilmSums& sums, const double origin[3]) {
   if (aov)
     for (const char* name :
          {"albedo.R", "albedo.G", "albedo.B", "depth.Z", "normal.X", "normal.Y", "normal.Z", "uv.U", "tangent.X",
-          "tangent.Y", "tangent.Z", "uv.V", "position.X", "position.Y", "position.Z", "ply.id"})
+          "tangent.Y", "tangent.Z", "uv.V", "position.X", "position.Y", "position.Z", "ply.id", "coverage"})
       image.channels.push_back(name);
   const size_t pixels = size_t(sums.width) * sums.height, stride = image.channels.size();
   image.pixels.assign(pixels * stride, 0.0f);
@@ -58,6 +58,7 @@ Image develop(const FilmSums& sums, const double origin[3]) {
                                       a[2].z * k, a[2].w * place, a[3].x * place, a[3].y * place, a[3].z * place};
     for (size_t c = 0; c < v.size(); ++c) out[7 + c] = float(v[c] + (c >= 12 && hits > 0 ? origin[c - 12] : 0));
     out[22] = sums.ply[i] == W_NONE ? -1.0f : float(sums.ply[i]);
+    out[23] = float(hits * k);  // share of the samples that met something
   }
   return image;
 }

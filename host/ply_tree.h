@@ -15,7 +15,8 @@ struct PlyPatch {
   uint32_t first = 0;         ///< first segment, counted inside the run
   uint32_t intervals = 0;
   uint32_t plies = 1;
-  uint32_t cell = 0, fabric = 0, material = 0;
+  uint32_t cell = 0, fabric = 0;
+  uint32_t material = 0;   ///< of plies, or W_MATERIAL_FIBRE | of fibres
   uint32_t first_ply = 0;  ///< number of the run's ply 0, over all fabrics
   float radius = 0;        ///< metres
   float tau = 0;           ///< optical radius; -1 or less = opaque

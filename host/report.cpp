@@ -32,6 +32,8 @@ Json fabric_json(const Fabric& f, const MeshReport& mesh) {
       {"full_yarns", f.report.full_yarns},
       {"runs", f.report.runs},
       {"plies", f.report.plies},
+      {"fibres", f.report.fibres},
+      {"flyaways", f.report.flyaways},
       {"segments", f.report.segments},
       {"vertices", f.report.vertices},
       {"samples_outside", f.report.samples_outside},
@@ -42,6 +44,7 @@ Json fabric_json(const Fabric& f, const MeshReport& mesh) {
       {"stitch_m", {f.report.stitch_metres.x, f.report.stitch_metres.y}},
       {"yarn_radius_m", f.yarn_radius},
       {"ply_radius_m", f.ply_radius},
+      {"fibre_radius_m", f.fibre_radius},
       {"mirrored", f.report.mirrored},
       {"patches", f.patches.size()},
       {"cells", f.cell_triangles.offset.empty() ? 0 : f.cell_triangles.offset.size() - 1},
@@ -87,6 +90,9 @@ std::string build_report_text(const World& world) {
                        1e3 * f.yarn_radius, 1e3 * f.ply_radius);
     out += fmt::format("  knitted    {} full yarns, {} runs, {} segments, {} vertices ({} bytes each)\n", r.full_yarns,
                        r.runs, r.segments, r.vertices, W_VERTEX_WORDS * 4);
+    if (r.fibres)
+      out += fmt::format("  fibres     {} curves of radius {:.4f} mm, {} of them flyaways\n", r.fibres,
+                         1e3 * f.fibre_radius, r.flyaways);
     out += fmt::format("  cut        {} samples outside the cloth, {} in the half stitch past its borders\n",
                        r.samples_outside, r.samples_extrapolated);
     for (const auto& s : r.snapped_repeats)

@@ -114,6 +114,7 @@ struct IntegratorScene {
   int max_depth = 0;  ///< scattering events; 0 = unlimited
   int russian_roulette_depth = 4;
   std::string light_sampling = "mis";  ///< mis, light, bsdf
+  std::string ply_lobes = "full";      ///< full, paper
   std::string local_stage = "exact";   ///< exact, cell, cell+ring
   int lanes = 0;                       ///< 0 = from the device; 1, 8, 16
   unsigned pool = 0;                   ///< paths in flight; 0 = from the device

@@ -29,8 +29,8 @@ std::vector<float> corners_of(const std::vector<float>& triangles) {
 std::vector<FabricInput> inputs_of(const World& world) {
   std::vector<FabricInput> inputs;
   for (size_t i = 0; i < world.fabrics.size(); ++i)
-    inputs.push_back(
-        {&world.fabrics[i], world.fabric_material[i], world.ply_materials[world.fabric_material[i]].tau_e});
+    inputs.push_back({&world.fabrics[i], world.fabric_material[i], world.ply_materials[world.fabric_material[i]].tau_e,
+                      world.fabric_fibre_material[i]});
   return inputs;
 }
 
@@ -40,6 +40,10 @@ SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage st
     : device_(device), stage_(stage), fabric_(upload_fabrics(device, inputs_of(world), world.origin, stage)) {
   const TriangleTree tree = build_triangle_tree(corners_of(world.triangles));
   ply_materials_ = Buffer<WPlyMaterial>(device, world.ply_materials);
+  fibre_details_ = Buffer<WFibreDetail>(device, world.fibres.details);
+  fibre_offsets_ = Buffer<uint32_t>(device, world.fibres.offsets);
+  fibre_candidates_ = Buffer<w_float4>(device, world.fibres.candidates);
+  fibre_materials_ = Buffer<WFibreMaterial>(device, world.fibre_materials);
   triangles_ = Buffer<float>(device, in_order(world.triangles, tree.order));
   if (!tree.order.empty()) {
     tri_nodes_ = Buffer<uint32_t>(device, tree.tree.words);
@@ -110,7 +114,8 @@ std::map<std::string, uint64_t> SceneDevice::bytes() const {
           {"triangles", triangles_.bytes() + tri_leaves_.bytes() + tri_nodes_.bytes()},
           {"environment", env_texels_.bytes() + env_cdf_.bytes()},
           {"lights", lights_.bytes() + light_cdf_.bytes() + light_triangles_.bytes()},
-          {"materials", ply_materials_.bytes() + surface_materials_.bytes()},
+          {"fibre detail", fibre_details_.bytes() + fibre_offsets_.bytes() + fibre_candidates_.bytes()},
+          {"materials", ply_materials_.bytes() + fibre_materials_.bytes() + surface_materials_.bytes()},
           {"UV cells", stage_ == LocalStage::exact
                            ? 0
                            : fabric_.cell_triangles.bytes() + fabric_.cell_segments.bytes() + fabric_.base_uv.bytes()}};

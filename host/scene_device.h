@@ -19,6 +19,10 @@ class SceneDevice {
 
   const cl::Buffer& vertices() const { return fabric_.vertices.cl(); }
   const cl::Buffer& ply_materials() const { return ply_materials_.cl(); }
+  const cl::Buffer& fibre_details() const { return fibre_details_.cl(); }
+  const cl::Buffer& fibre_offsets() const { return fibre_offsets_.cl(); }
+  const cl::Buffer& fibre_candidates() const { return fibre_candidates_.cl(); }
+  const cl::Buffer& fibre_materials() const { return fibre_materials_.cl(); }
   const cl::Buffer& triangles() const { return triangles_.cl(); }
   const cl::Buffer& spheres() const { return spheres_.cl(); }
   const cl::Buffer& surface_materials() const { return surface_materials_.cl(); }
@@ -34,6 +38,10 @@ class SceneDevice {
   LocalStage stage_;
   FabricDevice fabric_;
   Buffer<WPlyMaterial> ply_materials_;
+  Buffer<WFibreDetail> fibre_details_;
+  Buffer<uint32_t> fibre_offsets_;
+  Buffer<w_float4> fibre_candidates_;
+  Buffer<WFibreMaterial> fibre_materials_;
   Buffer<float> triangles_;
   Buffer<uint32_t> tri_nodes_;
   Buffer<float> tri_leaves_;

@@ -96,6 +96,7 @@ IntegratorScene integrator_of(const JsonNode& node) {
   out.max_depth = integer_of(node, "max_depth");
   out.russian_roulette_depth = integer_of(node, "russian_roulette_depth");
   out.light_sampling = node["light_sampling"].text;
+  out.ply_lobes = node["ply_lobes"].text;
   out.local_stage = node["local_stage"].text;
   out.lanes = integer_of(node, "lanes");
   out.pool = static_cast<unsigned>(number_of(node, "pool"));
@@ -175,6 +176,19 @@ FabricScale scale_of(const JsonNode& node) {
   return scale;
 }
 
+Detail detail_of(const std::string& word) {
+  return word == "none"    ? Detail::none
+         : word == "paper" ? Detail::paper
+         : word == "maps"  ? Detail::maps
+                           : Detail::fibres;
+}
+
+FlyawaySpec flyaways_of(const JsonNode& node) {
+  constexpr double kPerMillimetre = 1e3;
+  return {kPerMillimetre * number_of(node, "hairs"), kPerMillimetre * number_of(node, "loops"),
+          number_of(node, "length"), number_of(node, "radius")};
+}
+
 FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index) {
   const std::string path = fmt::format("fabrics.{}", index);
   const JsonNode& yarn = node["yarn"];
@@ -187,6 +201,8 @@ FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index) {
   fabric.spec.ply_radius = number_of(yarn, "ply_radius");
   fabric.spec.height_offset = number_of(node, "height_offset");
   fabric.spec.tolerance = number_of(node, "tolerance");
+  fabric.spec.flyaways = flyaways_of(node["flyaways"]);
+  fabric.spec.detail = detail_of(node["detail"].text);
   fabric.mesh = mesh_of(node["mesh"]);
   fabric.transform = transform_of(node["transform"]);
   fabric.pattern = pattern_of(node["pattern"]);

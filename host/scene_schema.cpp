@@ -42,6 +42,8 @@ Type integrator() {
       {"max_depth", count(0, 65536), "scattering events per path; 0 = no limit", "0"},
       {"russian_roulette_depth", count(0, 65536), "scattering events before Russian roulette starts", "4"},
       {"light_sampling", word({"mis", "light", "bsdf"}), "how direct light is sampled", "mis"},
+      {"ply_lobes", word({"full", "paper"}), "how a ply scatters: the measured lobes, or Lambert lobes as in papers",
+       "full"},
       {"local_stage", word({"exact", "cell", "cell+ring"}), "which cells a ray visits (KNIT21 Algorithm 2 is cell)",
        "exact"},
       {"lanes", one_of({0, 1, 8, 16}), "width of explicit vectors; 0 = from the device", "0"},
@@ -121,6 +123,12 @@ Type fabric() {
       {"thickness", number({0.01, 100}), "factor on the yarn radius of the tile", "1"},
       {"ply_radius", length(kLength), "in the cloth; 0 = touching circles that fill the yarn", "0"},
   });
+  const auto flyaways = object({
+      {"hairs", number({0, 1000}), "with one free end, per millimetre of ply", "0"},
+      {"loops", number({0, 1000}), "with both ends in the ply, per millimetre of ply", "0"},
+      {"length", length(kLength), "mean length of a hair; 0 = 2.2 ply radii, as measured", "0"},
+      {"radius", length(kLength), "of a flyaway; 0 = that of the ply's fibres", "0"},
+  });
   const auto gauge = object({
       {"wales", number({0.1, 10000}), "per 10 cm", "", true},
       {"courses", number({0.1, 10000}), "per 10 cm; absent = from the tile's aspect"},
@@ -138,6 +146,9 @@ Type fabric() {
           {"height_offset", length(kAnyLength), "along the normal of the base mesh", "0"},
           {"tolerance", number({1e-4, 1}), "of the ply curves, in ply radii", "0.05"},
           {"material", text(), "name of a ply material; absent = wool"},
+          {"flyaways", flyaways, "fibres that stand off the plies", "{}"},
+          {"detail", word({"none", "paper", "maps", "fibres"}),
+           "of plies: the tube, maps as KNIT21, maps, or explicit fibres", "maps"},
       },
       {{{"repeats", "gauge", "uv_metres"}, true}});
 }

@@ -16,12 +16,18 @@ constexpr uint32_t kTile = 8;          // W_TILE of path_state.clh
 constexpr uint32_t kDepthCap = 65536;  // no path is this long; reaching it is counted as an event
 
 // Places of the queue lengths in queue_counts_.
-constexpr uint32_t kGenerated = 0, kHits = 1, kShaded[2] = {4, 8}, kQueueCounts = 12;
+constexpr uint32_t kGenerated = 0, kHits = 1, kShaded[2] = {5, 9}, kQueueCounts = 13;
 
 template <typename... Args>
 void set_args(cl::Kernel& kernel, cl_uint first, const Args&... args) {
   cl_uint index = first;
   (kernel.setArg(index++, args), ...);
+}
+
+/// Width of a pixel on what the camera sees: x metres, and y metres more per metre of distance.
+cl_float2 pixel_width(const WCamera& camera) {
+  const float film = 2 * camera.half_height / float(camera.height);
+  return camera.kind == 1 ? cl_float2{{film, 0}} : cl_float2{{0, film}};
 }
 
 }  // namespace
@@ -50,7 +56,8 @@ Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Featu
   for (auto* b :
        {&mask_, &active_[0], &active_[1], &ply_list_, &surface_list_, &miss_list_, &shadow_list_, &spare_list_})
     ints(*b, pool_);
-  ints(chunk_, (pool_ / kChunk + 1) * 3);
+  ints(fibre_list_, features_.fibres ? pool_ : 0);
+  ints(chunk_, (pool_ / kChunk + 1) * bins());
   ints(queue_counts_, kQueueCounts);
   vec(film_, pixels * kScrambles);
   film_.fill(device_, w_float4{0, 0, 0, 0});
@@ -99,7 +106,20 @@ void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
   if (kernels_.contains("shade_ply")) {
     auto& k = kernel("shade_ply");
     next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1)));
-    set_args(k, next, scene_.vertices(), scene_.ply_materials(), aov_.cl(), ply_list_.cl(), queue_counts_.cl(), kHits);
+    set_args(k, next, scene_.vertices(), scene_.ply_materials());
+    next += 2;
+    if (features_.detail) {
+      set_args(k, next, scene_.fibre_details(), scene_.fibre_offsets(), scene_.fibre_candidates());
+      set_args(k, next + 3, pixel_width(camera_));
+      next += 4;
+    }
+    set_args(k, next, aov_.cl(), ply_list_.cl(), queue_counts_.cl(), kHits);
+  }
+  if (kernels_.contains("shade_fibre")) {
+    auto& k = kernel("shade_fibre");
+    next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1)));
+    set_args(k, next, scene_.vertices(), scene_.fibre_materials(), aov_.cl(), fibre_list_.cl(), queue_counts_.cl(),
+             kHits + 3);
   }
   if (kernels_.contains("shade_surface")) {
     auto& k = kernel("shade_surface");
@@ -143,6 +163,7 @@ void Wavefront::compact(const Buffer<uint32_t>& list, uint32_t count_index, uint
   launch("compact_scan", 1);
   set_args(kernel("compact_scatter"), 0, list.cl(), mask_.cl(), queue_counts_.cl(), count_index, chunk_.cl(), out0.cl(),
            out1.cl(), out2.cl());
+  if (features_.fibres) kernel("compact_scatter").setArg(8, fibre_list_.cl());
   launch("compact_scatter", chunks);
 }
 
@@ -151,8 +172,8 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
   frame.samples_before = first_sample;
   frame.samples_in_wave = samples;
   frame.paths = pixels * samples;
-  for (const char* name :
-       {"generate", "intersect", "miss", "shade_ply", "shade_surface", "connect", "accumulate", "accumulate_aov"})
+  for (const char* name : {"generate", "intersect", "miss", "shade_ply", "shade_fibre", "shade_surface", "connect",
+                           "accumulate", "accumulate_aov"})
     if (const auto found = kernels_.find(name); found != kernels_.end()) found->second.setArg(0, frame);
 
   launch("generate", frame.paths);
@@ -173,7 +194,7 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
     launch("intersect", bound);
     compact(live, count_index, kHits, bound, ply_list_, surface_list_, miss_list_);
     launch("miss", bound);
-    for (const char* name : {"shade_ply", "shade_surface"})
+    for (const char* name : {"shade_ply", "shade_fibre", "shade_surface"})
       if (const auto found = kernels_.find(name); found != kernels_.end()) {
         found->second.setArg(found->second.getInfo<CL_KERNEL_NUM_ARGS>() - 1, depth);
         launch(name, bound);

@@ -59,6 +59,7 @@ class Wavefront {
   void launch(const std::string& name, size_t items);
   void compact(const Buffer<uint32_t>& list, uint32_t count_index, uint32_t total_index, size_t bound,
                const Buffer<uint32_t>& out0, const Buffer<uint32_t>& out1, const Buffer<uint32_t>& out2);
+  uint32_t bins() const { return features_.fibres ? 4 : 3; }  // W_BINS of compact.cl
   void harvest_events();
 
   const Device& device_;
@@ -73,8 +74,8 @@ class Wavefront {
 
   Buffer<w_float4> ray_o_, ray_l_, ray_d_, weight_, hit_, radiance_, shadow_o_, shadow_l_, shadow_d_, shadow_c_;
   Buffer<std::array<float, 2>> hit_uv_;
-  Buffer<uint32_t> mask_, active_[2], ply_list_, surface_list_, miss_list_, shadow_list_, spare_list_, chunk_,
-      queue_counts_;
+  Buffer<uint32_t> mask_, active_[2], ply_list_, surface_list_, miss_list_, fibre_list_, shadow_list_, spare_list_,
+      chunk_, queue_counts_;
   Buffer<w_float4> film_, aov_, aov_film_;
   Buffer<uint32_t> ply_film_;
 };

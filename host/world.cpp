@@ -67,12 +67,19 @@ class Builder {
       require_uv(mesh);
       transform_mesh(mesh, fabric.transform);
       const Pattern pattern = load_pattern(fabric.pattern);
-      refuse_if_too_large(mesh, pattern, fabric.spec);
+      FabricSpec spec = fabric.spec;
+      spec.fibres = fibre_recipe(scene_.materials.at(size_t(fabric.material)).yarn);
+      refuse_if_too_large(mesh, pattern, spec);
       world_.fabric_mesh_reports.push_back(validate(mesh));
       for (const auto& p : mesh.position) bounds_.add(p), fabric_bounds_.add(p);
-      world_.fabrics.push_back(knit_fabric(std::move(mesh), pattern, fabric.spec));
+      world_.fabrics.push_back(knit_fabric(std::move(mesh), pattern, spec));
       world_.fabric_material.push_back(uint32_t(world_.ply_materials.size()));
-      world_.ply_materials.push_back(ply_material(scene_.materials.at(size_t(fabric.material)).yarn));
+      const PlyAppearance& yarn = scene_.materials.at(size_t(fabric.material)).yarn;
+      world_.ply_materials.push_back(ply_material(yarn));
+      world_.fibres.add(spec.fibres, world_.fabrics.back().ply_radius, spec.detail);
+      const bool fibres = world_.fabrics.back().report.fibres > 0;
+      world_.fabric_fibre_material.push_back(fibres ? uint32_t(world_.fibre_materials.size()) : W_NONE);
+      if (fibres) world_.fibre_materials.push_back(fibre_material(yarn));
       if (progress_) progress_("knit", double(world_.fabrics.size()) / double(scene_.fabrics.size()));
     }
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geom/fabric.h"
+#include "host/fibre_tables.h"
 #include "host/image.h"
 #include "host/light_tables.h"
 #include "host/scene.h"
@@ -25,8 +26,11 @@ struct World {
   std::vector<Fabric> fabrics;
   std::vector<MeshReport> fabric_mesh_reports;
   std::vector<WPlyMaterial> ply_materials;
-  std::vector<uint32_t> fabric_material;  ///< per fabric, into ply_materials
-  std::vector<float> triangles;           ///< W_TRIANGLE_WORDS per triangle, see stages/shade_surface.cl
+  std::vector<uint32_t> fabric_material;        ///< per fabric, into ply_materials
+  FibreTables fibres;                           ///< detail maps of every ply material
+  std::vector<WFibreMaterial> fibre_materials;  ///< of fabrics with explicit fibres only
+  std::vector<uint32_t> fabric_fibre_material;  ///< per fabric, into fibre_materials; W_NONE without explicit fibres
+  std::vector<float> triangles;                 ///< W_TRIANGLE_WORDS per triangle, see stages/shade_surface.cl
   std::vector<WSphere> spheres;
   std::vector<WSurfaceMaterial> surface_materials;
   LightTables lights;

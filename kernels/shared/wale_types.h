@@ -54,8 +54,8 @@ typedef int32_t w_int;
 
 /* --- stored ply vertex: 7 floats, 28 bytes: position, frame normal, rest length along the full ply -----------------
    The length starts anywhere (a hash of the ply, so that neighbours do not look alike) and wraps at W_LENGTH_PERIOD ply
-   radii: a float then keeps the phase of the fibres to 1e-4 rad on any length of yarn. All that winds along a ply does so
-   a whole number of times in one period (w_turns_per_length). */
+   radii: a float then keeps the phase of the fibres to 1e-3 rad on any length of yarn. All that winds along a ply does so
+   a whole number of times in one period (appearance/fibre_phase.clh). */
 #define W_VERTEX_WORDS 7
 #define W_LENGTH_PERIOD 4096.0f
 
@@ -105,6 +105,19 @@ typedef struct WPlyMaterial {
   float d_f, s_b, d_b, v_c;
   float v_e, n0, n1, tilt; /* tilt = tan of the angle between surface fibres and the ply axis, signed */
 } WPlyMaterial;
+
+/* Fibre detail of one ply material (kernels/appearance/fibre_detail.clh). Lengths in ply radii unless said. */
+#define W_DETAIL_BINS 64
+#define W_DETAIL_NONE 0
+#define W_DETAIL_PAPER 1 /* phase by the arc of the joint's ellipse, no migration, no filter: KNIT21 to the letter */
+#define W_DETAIL_MAPS 2
+typedef struct WFibreDetail {
+  w_uint level;
+  w_uint first_offset; /* of its W_DETAIL_BINS + 1 offsets into the candidates */
+  float turns, wander; /* turns of the bundle, and migrations, per metre of ply */
+  float fibre_radius, migration_min, twist, mean_distance;
+  float inv_mean_openness, mean_openness, tilt_variance, ply_radius; /* metres */
+} WFibreDetail;
 
 /* Far-field scattering of one fibre (docs/appearance.md): R at the surface, TT through it. */
 typedef struct WFibreMaterial {
@@ -193,6 +206,7 @@ static_assert(sizeof(w_float4) == 16);
 static_assert(sizeof(WAnchor) == 32);
 static_assert(sizeof(WGrid) == 48);
 static_assert(sizeof(WPlyMaterial) == 112);
+static_assert(sizeof(WFibreDetail) == 48);
 static_assert(sizeof(WFibreMaterial) == 48);
 static_assert(sizeof(WSurfaceMaterial) == 48);
 static_assert(sizeof(WLight) == 48);

@@ -22,5 +22,10 @@ __kernel void intersect(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, __global co
   const WHit h = w_closest(&scene, &ray);
   hit[slot] = (uint4)(as_uint(h.t), h.kind, h.code, 0u);
   hit_uv[slot] = (float2)(h.u, h.v);
-  mask[slot] = h.kind == W_HIT_NONE ? W_BIN_MISS : h.kind == W_HIT_PLY ? W_BIN_PLY : W_BIN_SURFACE;
+  uint bin = h.kind == W_HIT_NONE ? W_BIN_MISS : h.kind == W_HIT_PLY ? W_BIN_PLY : W_BIN_SURFACE;
+#ifdef W_HAS_FIBRES
+  if (bin == W_BIN_PLY && (leaves[((size_t)(h.code >> 4) << 2) + W_LEAF_MATERIAL] & W_MATERIAL_FIBRE))
+    bin = W_BIN_FIBRE;
+#endif
+  mask[slot] = bin;
 }

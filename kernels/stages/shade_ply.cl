@@ -16,7 +16,12 @@ static inline float3 w_leave(const WPlySurface* s, float3 out, float3 middle, fl
 }
 
 __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PARAMS, __global const float* vertices,
-                        __global const WPlyMaterial* materials, __global float4* aov, __global const uint* list,
+                        __global const WPlyMaterial* materials,
+#ifdef W_HAS_DETAIL
+                        __global const WFibreDetail* details, __global const uint* fibre_offsets,
+                        __global const float4* fibre_candidates, float2 pixel_width,
+#endif
+                        __global float4* aov, __global const uint* list,
                         __global const uint* counts, uint count_index, uint depth) {
   const uint i = get_global_id(0);
   if (i >= counts[count_index]) return;
@@ -43,7 +48,22 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
   h.v = hit_uv[slot].y;
   const WPlySurface s = w_ply_surface(&scene, vertices, &ray, &h);
   const float3 wv = -ray.d;
-  const WPlyShade shade = w_ply_setup(materials[s.material], s.smooth_t, s.smooth_n, wv);
+  const WPlyMaterial material = materials[s.material];
+  WFibreAt fibre = w_fibre_mean(material.tilt);
+#ifdef W_HAS_DETAIL
+  // What the camera sees itself; later on the path nothing is sharp enough to tell fibres apart.
+  if (depth == 0 && details[s.material].level != W_DETAIL_NONE) {
+    const WFibreDetail detail = details[s.material];
+    const int paper = detail.level == W_DETAIL_PAPER;
+    const float2 phase = paper ? w_ellipse_phase(&s) : (float2)(s.cos_phi, s.sin_phi);
+    const float width = pixel_width.x + pixel_width.y * h.t;
+    const float diameters = width / (2.0f * detail.fibre_radius * s.radius * fmax(sqrt(fmax(1.0f - s.h * s.h, 0.0f)), 0.05f));
+    if (paper || diameters < 2.0f)
+      fibre = w_fibre_at(detail, fibre_offsets, fibre_candidates, phase.x, phase.y, s.length);
+    if (!paper) fibre = w_fibre_filtered(detail, fibre, diameters);
+  }
+#endif
+  const WPlyShade shade = w_ply_setup_detail(material, s.smooth_t, s.smooth_n, wv, fibre);
 
 #ifdef W_AOVS
   if (depth == 0) {

@@ -12,6 +12,7 @@
 #include "geom/base_mesh_generators.h"
 #include "geom/error.h"
 #include "geom/mesh_edges.h"
+#include "geom/stored_length.h"
 #include "geom/uv_grid.h"
 #include "geom/warp.h"
 #include "shared/wale_types.h"
@@ -129,7 +130,7 @@ TEST(Fabric, FlatSwatchKeepsTheFlatKnit) {
   for (const PlyRun& run : fabric.runs)
     for (uint32_t k = 0; k + 1 < run.count; ++k) {
       const Anchor &a = fabric.anchors[run.first_vertex + k], &b = fabric.anchors[run.first_vertex + k + 1];
-      const double rest = double(b.length) - a.length;
+      const double rest = length_between(a.length, b.length, fabric.ply_radius);
       worst = std::max(worst, std::abs(glm::length(place(fabric, b) - place(fabric, a)) / rest - 1));
     }
   EXPECT_LT(worst, 0.02);  // chord against arc, and float lengths
@@ -183,8 +184,9 @@ TEST(Fabric, TubeYarnsCloseAndRepeatsSnap) {
       for (const auto& [ghost, real] : {std::pair(0u, last), std::pair(last + 1, 1u), std::pair(last + 2, 2u)}) {
         EXPECT_EQ(std::memcmp(&a[ghost], &a[real], offsetof(Anchor, length)), 0);  // all but the length, to the bit
       }
-      EXPECT_GT(a[last + 1].length, a[1].length);
-      EXPECT_NEAR(a[last + 2].length - a[last + 1].length, a[2].length - a[1].length, 1e-6);
+      EXPECT_GT(length_between(a[1].length, a[last + 1].length, fabric.ply_radius), 0);
+      EXPECT_NEAR(length_between(a[last + 1].length, a[last + 2].length, fabric.ply_radius),
+                  length_between(a[1].length, a[2].length, fabric.ply_radius), 1e-6);
     }
     const Anchor* a = fabric.anchors.data() + run.first_vertex;
     for (uint32_t k = 1; k + 2 < run.count; ++k) {
@@ -205,8 +207,9 @@ TEST(Fabric, NoSegmentOfATubeIsLongAcrossTheSeam) {
     for (const uint32_t id : all_segments(fabric)) {
       const Anchor &a = fabric.anchors[id], &b = fabric.anchors[id + 1];
       longest = std::max(longest, glm::length(place(fabric, b) - place(fabric, a)));
-      rest = std::max(rest, double(b.length) - a.length);
-      EXPECT_GT(b.length, a.length);
+      const double between = length_between(a.length, b.length, fabric.ply_radius);
+      rest = std::max(rest, between);
+      EXPECT_GT(between, 0);
     }
     EXPECT_LT(longest, 1.5 * rest);
   }

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "geom/fabric.h"
+#include "geom/stored_length.h"
 #include "geom/warp.h"
 
 namespace wale {
@@ -39,7 +40,8 @@ std::vector<double> stretches(const Fabric& fabric) {
     for (uint32_t p = 0; p < uint32_t(fabric.plies); ++p)
       for (uint32_t k = 0; k + 1 < run.count; ++k) {
         const Anchor* a = fabric.anchors.data() + run.first_vertex + p * run.count + k;
-        result.push_back(glm::length(place(fabric, a[1]) - place(fabric, a[0])) / (double(a[1].length) - a[0].length));
+        result.push_back(glm::length(place(fabric, a[1]) - place(fabric, a[0])) /
+                         length_between(a[0].length, a[1].length, fabric.ply_radius));
       }
   std::sort(result.begin(), result.end());
   return result;

@@ -10,10 +10,10 @@ namespace wale::test {
 /// Kernel arguments are buffers and plain values in order; the last two are the output (w_real) and the item count.
 class KernelRunner {
  public:
-  KernelRunner(const std::string& source, bool twice)
+  KernelRunner(const std::string& source, bool twice, const std::string& variant = "")
       : device_(Device::open()),
         twice_(twice),
-        program_(build_program_text(device_, source, twice ? "-DW_DOUBLE -DW_LANES=1" : "-DW_LANES=1")) {}
+        program_(build_program_text(device_, source, (twice ? "-DW_DOUBLE -DW_LANES=1 " : "-DW_LANES=1 ") + variant)) {}
 
   const Device& device() const { return device_; }
 

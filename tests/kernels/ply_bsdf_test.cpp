@@ -105,6 +105,35 @@ TEST_P(PlyBsdf, WhiteFibresLoseNothing) {
   }
 }
 
+// Detail moves energy between the lobes and takes none; so do the papers' lobes without their shadow.
+TEST_P(PlyBsdf, WhiteFibresLoseNothingToDetail) {
+  const std::vector<float> views = random_views(20000, false, 13);
+  for (const char* variant : {"-DW_TEST_DETAIL", "-DW_PAPER_LOBES"}) {
+    const KernelRunner runner(kPlyKernels, GetParam(), variant);
+    PlyAppearance a;
+    a.preset = "cotton";
+    a.color = Rgb{1, 1, 1};
+    const auto out = runner.run("energies", views.size() / 9, 15, runner.upload<WPlyMaterial>({ply_material(a)}),
+                                runner.upload(views));
+    double worst = 0;
+    for (size_t i = 0; i < out.size(); i += 15)
+      for (int k = 0; k < 3; ++k)
+        worst = std::max(worst, std::abs(out[i + k] + out[i + 3 + k] + out[i + 6 + k] - 1));
+    EXPECT_LT(worst, tolerance::kFurnace) << variant;
+  }
+}
+
+// The papers take the shadow as a plain factor: energy is lost, and only where there is shadow.
+TEST_P(PlyBsdf, PaperShadowLosesEnergy) {
+  const KernelRunner runner(kPlyKernels, GetParam(), "-DW_PAPER_LOBES -DW_TEST_DETAIL");
+  PlyAppearance a;
+  a.color = Rgb{1, 1, 1};
+  const auto out = runner.run("energies", 1, 15, runner.upload<WPlyMaterial>({ply_material(a)}),
+                              runner.upload(floats(ply_view(0.2, 0.1))));
+  const double surface = out[0], body = out[3] + out[6];
+  EXPECT_NEAR(body, (1 - surface) * (1 - 0.7 * (1 - 0.2)), 1e-5);
+}
+
 TEST_P(PlyBsdf, DarkFibresAbsorb) {
   const KernelRunner runner(kPlyKernels, GetParam());
   PlyAppearance a;

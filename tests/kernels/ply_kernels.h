@@ -13,7 +13,16 @@ inline const char* kPlyKernels = R"(
 #include "appearance/ply_bsdf.clh"
 static inline w_real3 vec(__global const float* p) { return (w_real3)(p[0], p[1], p[2]); }
 static inline WPlyShade shade_of(__global const WPlyMaterial* m, __global const float* p) {
+#ifdef W_TEST_DETAIL /* a fibre that is turned, steep and in the shade of its neighbours */
+  WFibreAt fibre = w_fibre_mean(R(-0.4));
+  fibre.sin_turn = R(0.8);
+  fibre.shadow = R(0.3);
+  fibre.openness = R(0.2);
+  fibre.widen = R(0.01);
+  return w_ply_setup_detail(*m, normalize(vec(p)), normalize(vec(p + 3)), normalize(vec(p + 6)), fibre);
+#else
   return w_ply_setup(*m, normalize(vec(p)), normalize(vec(p + 3)), normalize(vec(p + 6)));
+#endif
 }
 /* 9 energies, 3 probabilities, h, c, gamma */
 __kernel void energies(__global const WPlyMaterial* m, __global const float* in, __global w_real* out, uint count) {

@@ -1,0 +1,23 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "geom/fabric.h"
+#include "geom/fibre_detail.h"
+#include "shared/wale_types.h"
+
+namespace wale {
+
+/// Tables of fibre detail for all ply materials, as the kernels read them (kernels/appearance/fibre_detail.clh).
+struct FibreTables {
+  std::vector<WFibreDetail> details;  ///< per ply material
+  std::vector<uint32_t> offsets;      ///< W_DETAIL_BINS + 1 per material with detail
+  std::vector<w_float4> candidates;   ///< distance, cosine and sine of the angle, migration phase
+
+  bool any() const { return !candidates.empty(); }
+  /// Appends the next ply material. ply_radius in metres; turns and migrations become whole numbers per
+  /// W_LENGTH_PERIOD, where stored lengths wrap.
+  void add(const FibreRecipe& recipe, double ply_radius, Detail level);
+};
+
+}  // namespace wale

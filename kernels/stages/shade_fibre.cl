@@ -1,0 +1,88 @@
+/* A path meets a single fibre: connect it to a light, go on along a lobe of the fibre's far-field scattering. The path
+   goes on from the fibre's axis, where a far-field function has its one place: a ray from there meets no front face of
+   its own tube. */
+#include "appearance/fibre_bsdf.clh"
+#include "geometry/ply_surface.clh"
+#include "lights.clh"
+#include "sampling/dimensions.clh"
+#include "sampling/sobol.clh"
+#include "stages/continue_path.clh"
+#include "stages/light_args.clh"
+#include "stages/path_state.clh"
+#include "stages/scene_args.clh"
+
+__kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PARAMS, __global const float* vertices,
+                          __global const WFibreMaterial* materials, __global float4* aov, __global const uint* list,
+                          __global const uint* counts, uint count_index, uint depth) {
+  const uint i = get_global_id(0);
+  if (i >= counts[count_index]) return;
+  const uint slot = list[i];
+  if (w_last_ray(&frame, depth)) {
+    mask[slot] = 0u;
+    return;
+  }
+  const WScene scene = W_SCENE;
+
+  WRay ray;
+  ray.o = ray_o[slot].xyz;
+  ray.l = ray_l[slot].xyz;
+  ray.d = ray_d[slot].xyz;
+  const uint4 raw = hit[slot];
+  WHit h;
+  h.t = as_float(raw.x);
+  h.kind = raw.y;
+  h.code = raw.z;
+  h.u = hit_uv[slot].x;
+  h.v = hit_uv[slot].y;
+  const WPlySurface s = w_ply_surface(&scene, vertices, &ray, &h);
+  const WFibreShade shade = w_fibre_setup(materials[s.material & ~W_MATERIAL_FIBRE], s.smooth_t, s.smooth_n, -ray.d);
+  const float3 axis = s.u * s.edge;
+
+#ifdef W_AOVS
+  if (depth == 0) {
+    __global float4* a = aov + (ulong)slot * 4;
+    a[0] = (float4)(shade.a[0] + shade.a[1], h.t);
+    a[1] = (float4)(s.smooth_n, s.phi);
+    a[2] = (float4)(s.smooth_t, s.length);
+    a[3] = (float4)(s.anchor + s.x, as_float(s.ply));
+  }
+#endif
+
+  const WSampler sampler = w_sampler(w_slot_pixel(&frame, slot), w_slot_sample(&frame, slot), frame.seed);
+  const float4 u = w_sample4(&sampler, W_SET_SCATTER(depth));
+  float left;
+  const int lobe = w_fibre_choose(&shade, u.x, &left);
+
+  uint bins = 0u;
+#ifdef W_HAS_LIGHTS
+  if (frame.light_sampling != 2) {
+    const WLights lights = W_LIGHTS;
+    const WLightSample l = w_light_sample(&lights, s.anchor + axis, w_sample4(&sampler, W_SET_LIGHT(depth)));
+    if (l.pdf > 0.0f) {
+      float p;
+      const float3 f = w_fibre_eval(&shade, l.direction, &p);
+      const float share = frame.light_sampling == 0 ? w_mis(l.pdf, p) : 1.0f;
+      const float3 c = weight[slot].xyz * f * l.radiance * (share / l.pdf);
+      if (w_max3(c) > 0.0f) {
+        bins |= W_BIN_SHADOW;
+        shadow_o[slot] = (float4)(s.anchor, as_float(W_NONE));
+        shadow_l[slot] = (float4)(axis, as_float(h.code));
+        shadow_d[slot] = (float4)(l.direction, l.distance * W_SHADOW_END);
+        shadow_c[slot] = (float4)(c, 0.0f);
+      }
+    }
+  }
+#endif
+
+  const float3 w = w_fibre_sample(&shade, lobe, u.y, u.z, u.w, left);
+  float density;
+  const float3 f = w_fibre_eval(&shade, w, &density);
+  // A direction whose density has underflowed was drawn from the far tail of its lobe: the lobe's own weight is exact.
+  float3 next = weight[slot].xyz * (density > 1e-20f ? f / density : shade.a[lobe] / shade.q[lobe]);
+  bins |= w_continue(&frame, &next, depth, &sampler);
+  weight[slot] = (float4)(next, 0.0f);
+  ray_o[slot] = (float4)(s.anchor, as_float(W_NONE));
+  ray_l[slot] = (float4)(axis, as_float(h.code));
+  ray_d[slot] = (float4)(w, density);
+  mask[slot] = bins;
+}
