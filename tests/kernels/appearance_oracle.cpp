@@ -45,7 +45,11 @@ PlyOracle::PlyOracle(const WPlyMaterial& material, dvec3 t, dvec3 n, dvec3 wv) :
   gamma = std::clamp(std::atan2(glm::dot(n, y_), glm::dot(n, x_)), -kPi / 2, kPi / 2);
   h = std::sin(gamma);
   c = std::cos(gamma);
-  theta_v_ = angle_to_plane(wv, t);
+  const double cos_t = std::cos(angle_to_plane(wv, t));
+  // The body's axis leans in the plane of t and the viewer.
+  t_ = glm::normalize(t - 0.75 * double(m_.tilt) * h * x_);
+  x_ = glm::cross(y_, t_);
+  theta_v_ = angle_to_plane(wv, t_);
   tf_ = glm::normalize(t + double(m_.tilt) * glm::cross(t, n));
   frame(tf_, n, wv, &xf_, &yf_);
   theta_vf_ = angle_to_plane(wv, tf_);
@@ -53,11 +57,11 @@ PlyOracle::PlyOracle(const WPlyMaterial& material, dvec3 t, dvec3 n, dvec3 wv) :
 
   const double f0 = m_.f0, fresnel = f0 + (1 - f0) * std::pow(1 - std::cos(theta_vf_), 5);
   const double reflected = std::clamp(fresnel * m_.e_r * (1 + m_.e_r_h4 * std::pow(h, 4)), 0.0, 1.0);
-  const double forward = std::exp(-m_.b * c);
+  const double forward = std::exp(-m_.b * (1 + 3 * std::pow(1 - cos_t, 3)) * c);
   const double hits = std::max(1.0, m_.n0 + double(m_.n1) * c);  // whatever collided met a fibre
   for (int k = 0; k < 3; ++k) {
     const double omega = fresnel + (1 - fresnel) * rgb(m_.fibre)[k];
-    const double body = omega * std::pow(1 + (hits - 1) / 2 * (1 - omega), -2);
+    const double body = omega * std::pow(1 + (hits - 1) / 4 * (1 - omega), -4);
     const bool direct = m_.fibre.w != 0;
     energy[0][k] = reflected;
     energy[1][k] = (1 - reflected) * forward * (direct ? rgb(m_.forward)[k] : body);
