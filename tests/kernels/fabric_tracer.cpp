@@ -102,8 +102,9 @@ std::vector<PlyPatch> patches_of(const Fabric& fabric, float tau) {
   std::vector<PlyPatch> patches;
   for (const Patch& p : fabric.patches) {
     const PlyRun& run = fabric.runs[p.run];
-    patches.push_back({run.first_vertex, run.count, p.first, p.intervals, uint32_t(fabric.plies), p.cell, 0, 0, 0,
-                       float(fabric.ply_radius), tau, run.ghost_ends});
+    const bool fibre = run.kind == PlyRun::Kind::fibre;
+    patches.push_back({run.first_vertex, run.count, p.first, p.intervals, run.plies, p.cell, 0,
+                       fibre ? W_MATERIAL_FIBRE : 0, 0, run.radius, fibre ? -1.0f : tau, run.ghost_ends});
   }
   return patches;
 }
