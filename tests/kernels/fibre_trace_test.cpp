@@ -78,6 +78,7 @@ TEST(FibreTrace, RaysFromTheAxisMeetNoFrontFaceOfTheirOwnTube) {
       Ray ray = make_ray({0, 0, 0}, glm::normalize(d), uint32_t(i));
       const dvec3 axis = double(at[i].u) * edge;
       for (int c = 0; c < 3; ++c) ray.o[c] = at[i].anchor[c], ray.l[c] = float(axis[c]);
+      ray.skip = first[i].code;
       rays.push_back(ray);
       from.push_back(at[i].segment);
     }
