@@ -197,8 +197,11 @@ size_t estimate_segments(const BaseMesh& mesh, const Pattern& pattern, const Fab
     if (!spec.flyaways.any()) continue;
     const double wound = std::hypot(1, 2 * std::numbers::pi * map.yarn.twist * map.yarn.helix_radius);
     const double ply_metres = tiles * spec.plies * wound * yarn_per_tile(pattern, partners, map.yarn, chart.scale);
-    segments += ply_metres * (spec.flyaways.hairs + spec.flyaways.loops) *
-                segments_per_flyaway(spec.flyaways, map.yarn.ply_radius, kFibreTolerance * map.flyaway_radius);
+    PlyPiece piece;
+    piece.radius = map.yarn.ply_radius;
+    piece.twist = spec.fibres.twist;
+    piece.migrations = spec.fibres.migration_rate;
+    segments += ply_metres * flyaway_segments_per_metre(spec.flyaways, piece, kFibreTolerance * map.flyaway_radius);
   }
   return static_cast<size_t>(std::min(segments, 1e18));
 }

@@ -104,11 +104,16 @@ Curve hair(const PlyPiece& piece, const Axis& axis, double s, double scale, Draw
   };
 }
 
+/// Metres of ply under a loop: one swing of a migrating fibre.
+double loop_span(const PlyPiece& piece) {
+  const double swings = std::abs(piece.twist) * piece.migrations / (kTwoPi * piece.radius);  // per metre
+  return std::min(swings > 0 ? 1 / swings : 1e9, kLongestLoop * piece.radius);
+}
+
 /// Shifted along the ply where it would pass the piece's end: it ends where the cloth does.
 Curve loop(const PlyPiece& piece, const Axis& axis, double s, Draw& draw) {
   const double r = piece.radius, begin = piece.length.front(), end = piece.length.back();
-  const double swings = std::abs(piece.twist) * piece.migrations / (kTwoPi * r);  // per metre
-  const double span = std::min({swings > 0 ? 1 / swings : kLongestLoop * r, kLongestLoop * r, end - begin});
+  const double span = std::min(loop_span(piece), end - begin);
   const double first = std::clamp(s - 0.5 * span, begin, end - span);
   const double foot = kLoopFoot * r, top = r * std::max(1.0, draw.normal(kLoopTop));
   const double from = kTwoPi * draw.uniform(), turn = piece.twist / r * span;
@@ -163,11 +168,17 @@ void check_flyaways(const FlyawaySpec& spec, const char* fabric) {
   check(spec.radius, 0.01, "radius in metres");
 }
 
-double segments_per_flyaway(const FlyawaySpec& spec, double ply_radius, double tolerance) {
-  // An arc of the mean turn, and the wave of a long hair: |x''| as in hair().
-  const double length = spec.length > 0 ? spec.length : kHairLength * ply_radius;
-  const double wave = length > kHairLength * ply_radius ? kWave * 12 * length * kTwoPi : 0;
-  return std::clamp(std::sqrt((0.3 * length + wave) / (8 * tolerance)), double(kFewest), double(kMost));
+double flyaway_segments_per_metre(const FlyawaySpec& spec, const PlyPiece& piece, double tolerance) {
+  const double r = piece.radius;
+  const auto segments = [&](double bend) {
+    return std::clamp(std::sqrt(bend / (8 * tolerance)), double(kFewest), double(kMost));
+  };
+  // |x''| as in hair(): an arc of the mean turn, and the wave of a long hair.
+  const double length = spec.length > 0 ? spec.length : kHairLength * r;
+  const double wave = length > kHairLength * r ? kWave * 12 * length * kTwoPi : 0;
+  // ... and in loop(): its winding, and the bends of knitted plies, about a third of 1/r where they are sharpest.
+  const double span = loop_span(piece), turn = piece.twist * span / r;
+  return spec.hairs * segments(0.3 * length + wave) + spec.loops * segments(r * turn * turn + 0.3 * span * span / r);
 }
 
 }  // namespace wale

@@ -42,7 +42,7 @@ std::vector<Flyaway> make_flyaways(const PlyPiece& piece, const FlyawaySpec& spe
 /// Throws a user error naming the fabric for densities and lengths out of range.
 void check_flyaways(const FlyawaySpec& spec, const char* fabric);
 
-/// Segments of an average flyaway, for size estimates.
-double segments_per_flyaway(const FlyawaySpec& spec, double ply_radius, double tolerance);
+/// Segments of all flyaways on a metre of ply, roughly: for size estimates. `piece` needs no samples.
+double flyaway_segments_per_metre(const FlyawaySpec& spec, const PlyPiece& piece, double tolerance);
 
 }  // namespace wale

@@ -126,7 +126,7 @@ WPlyMaterial ply_material(const PlyAppearance& appearance) {
 FibreRecipe fibre_recipe(const PlyAppearance& appearance) {
   const Preset& preset = preset_of(appearance);
   FibreRecipe recipe;
-  recipe.fibres = preset.fibres;
+  recipe.fibres = appearance.fibres.value_or(preset.fibres);
   recipe.packing = preset.packing;
   recipe.twist = double(ply_material(appearance).tilt);
   return recipe;

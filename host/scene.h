@@ -40,6 +40,7 @@ struct PlyAppearance {
   std::optional<double> roughness;   ///< beta_R, radians
   std::optional<double> ior;
   std::optional<double> optical_radius;  ///< tau_e
+  std::optional<int> fibres;             ///< in a ply
   std::optional<double> fibre_twist;     ///< angle of the surface fibres to the ply axis, radians, signed
 };
 

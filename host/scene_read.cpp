@@ -124,6 +124,7 @@ MaterialSpec material_of(const std::string& name, const JsonNode& node) {
                      maybe_number(node, "roughness"),
                      maybe_number(node, "ior"),
                      maybe_number(node, "optical_radius"),
+                     node.has("fibres") ? std::optional(integer_of(node, "fibres")) : std::nullopt,
                      maybe_number(node, "fibre_twist")};
   } else {
     material.surface.coated = node["type"].text == "coated";

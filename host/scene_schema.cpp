@@ -62,6 +62,7 @@ Type material() {
       {"roughness", number({0, 90}, Unit::angle), "width of the surface highlight"},
       {"ior", number({1, 4}), "refractive index of the fibres"},
       {"optical_radius", number({0, 1e4}), "optical depth of a ply's radius: how dense the fibres are"},
+      {"fibres", count(1, 4096), "in a ply, where they are shown one by one or as maps"},
       {"fibre_twist", number({-89, 89}, Unit::angle), "angle of the surface fibres to the ply, signed"},
   });
   const auto diffuse = object({{"color", color(), "albedo", "[0.5, 0.5, 0.5]"}});

@@ -45,7 +45,7 @@ dvec2 uv_of(const Fabric& fabric, const Anchor& a) {
 std::vector<uint32_t> all_segments(const Fabric& fabric) {
   std::vector<uint32_t> ids;
   for (const PlyRun& run : fabric.runs)
-    for (uint32_t p = 0; p < uint32_t(fabric.plies); ++p)
+    for (uint32_t p = 0; p < run.plies; ++p)
       for (uint32_t k = run.ghost_ends ? 1 : 0; k + (run.ghost_ends ? 2 : 1) < run.count; ++k)
         ids.push_back(run.first_vertex + p * run.count + k);
   return ids;
@@ -61,8 +61,8 @@ void expect_sound(const Fabric& fabric) {
   for (const PlyRun& run : fabric.runs) {
     EXPECT_EQ(run.first_vertex, next);
     EXPECT_GE(run.count, run.ghost_ends ? 4u : 2u);
-    next += run.count * uint32_t(fabric.plies);
-    const uint32_t end = run.first_vertex + run.count * uint32_t(fabric.plies);
+    next += run.count * run.plies;
+    const uint32_t end = run.first_vertex + run.count * run.plies;
     for (uint32_t v = run.first_vertex; v < end; ++v) {
       const Anchor& a = fabric.anchors[v];
       ASSERT_LT(a.triangle, fabric.mesh.triangle.size());
@@ -74,14 +74,13 @@ void expect_sound(const Fabric& fabric) {
   EXPECT_EQ(next, fabric.anchors.size());
 
   std::vector<uint32_t> traced;
-  const uint32_t most = W_LEAF_LANES / uint32_t(fabric.plies);
   for (size_t i = 0; i < fabric.patches.size(); ++i) {
     const Patch& patch = fabric.patches[i];
-    EXPECT_TRUE(patch.intervals >= 1 && patch.intervals <= most);
+    EXPECT_TRUE(patch.intervals >= 1 && patch.intervals * fabric.runs[patch.run].plies <= W_LEAF_LANES);
     EXPECT_TRUE(i == 0 || fabric.patches[i - 1].cell <= patch.cell);
     EXPECT_LT(patch.cell + 1, fabric.cell_segments.offset.size());
     const PlyRun& run = fabric.runs[patch.run];
-    for (uint32_t p = 0; p < uint32_t(fabric.plies); ++p)
+    for (uint32_t p = 0; p < run.plies; ++p)
       for (uint32_t k = 0; k < patch.intervals; ++k)
         traced.push_back(run.first_vertex + p * run.count + patch.first + k);
   }
@@ -178,7 +177,7 @@ TEST(Fabric, TubeYarnsCloseAndRepeatsSnap) {
   for (const PlyRun& run : fabric.runs) {
     if (!run.ghost_ends) continue;
     ++closed;
-    for (uint32_t p = 0; p < uint32_t(fabric.plies); ++p) {
+    for (uint32_t p = 0; p < run.plies; ++p) {
       const Anchor* a = fabric.anchors.data() + run.first_vertex + p * run.count;
       const uint32_t last = run.count - 3;
       for (const auto& [ghost, real] : {std::pair(0u, last), std::pair(last + 1, 1u), std::pair(last + 2, 2u)}) {
@@ -271,7 +270,7 @@ TEST(Fabric, BothChartsOfAPillowOverlapAtTheBorder) {
   double beyond[2][4] = {};
   for (const PlyRun& run : fabric.runs) {
     const Chart& chart = fabric.charts[run.chart];
-    for (uint32_t v = run.first_vertex; v < run.first_vertex + run.count * uint32_t(fabric.plies); ++v) {
+    for (uint32_t v = run.first_vertex; v < run.first_vertex + run.count * run.plies; ++v) {
       const dvec2 uv = uv_of(fabric, fabric.anchors[v]), lo = chart.uv_min - uv, hi = uv - chart.uv_max;
       double* b = beyond[run.chart];
       b[0] = std::max(b[0], lo.x), b[1] = std::max(b[1], lo.y), b[2] = std::max(b[2], hi.x),

@@ -102,8 +102,9 @@ std::vector<PlyPatch> patches_of(const Fabric& fabric, float tau) {
   std::vector<PlyPatch> patches;
   for (const Patch& p : fabric.patches) {
     const PlyRun& run = fabric.runs[p.run];
-    patches.push_back({run.first_vertex, run.count, p.first, p.intervals, uint32_t(fabric.plies), p.cell, 0, 0, 0,
-                       float(fabric.ply_radius), tau, run.ghost_ends});
+    const bool fibre = run.kind == PlyRun::Kind::fibre;
+    patches.push_back({run.first_vertex, run.count, p.first, p.intervals, run.plies, p.cell, 0,
+                       fibre ? W_MATERIAL_FIBRE : 0, 0, run.radius, fibre ? -1.0f : tau, run.ghost_ends});
   }
   return patches;
 }
@@ -111,6 +112,7 @@ std::vector<PlyPatch> patches_of(const Fabric& fabric, float tau) {
 FabricTracer::FabricTracer(const Device& device, const Fabric& fabric, float tau, LocalStage stage)
     : device_(device),
       stage_(stage),
+      fibres_(fabric.report.fibres > 0),
       fabric_(upload(device, fabric, tau, stage)),
       leaves_(fabric_.tree.leaves.read(device)),
       counters_(device, W_EVENT_COUNT) {
@@ -118,8 +120,8 @@ FabricTracer::FabricTracer(const Device& device, const Fabric& fabric, float tau
 }
 
 cl::Kernel FabricTracer::bound(const char* name, const Buffer<Ray>& rays, size_t count) const {
-  const std::string options =
-      fmt::format("-DW_HAS_PLIES -DW_LANES={} -DW_LOCAL_STAGE={}", device_.traits().lanes, int(stage_));
+  const std::string options = fmt::format("-DW_HAS_PLIES -DW_LANES={} -DW_LOCAL_STAGE={}{}", device_.traits().lanes,
+                                          int(stage_), fibres_ ? " -DW_HAS_FIBRES" : "");
   cl::Kernel kernel(build_program_text(device_, kKernels, options), name);
   const FabricDevice& f = fabric_;
   cl_uint arg = 0;

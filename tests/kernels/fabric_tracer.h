@@ -29,6 +29,7 @@ class FabricTracer {
 
   const Device& device_;
   LocalStage stage_;
+  bool fibres_;
   FabricDevice fabric_;
   std::vector<uint32_t> leaves_;
   Buffer<uint32_t> counters_;

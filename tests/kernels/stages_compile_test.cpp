@@ -14,7 +14,8 @@ TEST_P(StagesCompile, InAllVariants) {
       " -DW_HAS_PLIES -DW_HAS_TRIANGLES -DW_HAS_SPHERES -DW_HAS_ENVIRONMENT -DW_HAS_LIGHTS -DW_AOVS";
   for (const std::string& options :
        {std::string("-DW_LANES=1 -DW_LOCAL_STAGE=0"), "-DW_LANES=8 -DW_LOCAL_STAGE=1" + all,
-        "-DW_LANES=16 -DW_LOCAL_STAGE=2" + all, "-DW_LANES=16 -DW_LOCAL_STAGE=0" + all}) {
+        "-DW_LANES=16 -DW_LOCAL_STAGE=2" + all, "-DW_LANES=16 -DW_LOCAL_STAGE=0" + all,
+        "-DW_LANES=16 -DW_LOCAL_STAGE=0 -DW_HAS_FIBRES" + all}) {
     const cl::Program program = build_program(device, GetParam(), options);
     EXPECT_EQ(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.id()).find("warning"), std::string::npos)
         << program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.id());
@@ -23,8 +24,9 @@ TEST_P(StagesCompile, InAllVariants) {
 
 INSTANTIATE_TEST_SUITE_P(All, StagesCompile,
                          testing::Values("stages/generate.cl", "stages/intersect.cl", "stages/miss.cl",
-                                         "stages/shade_ply.cl", "stages/shade_surface.cl", "stages/connect.cl",
-                                         "stages/compact.cl", "stages/accumulate.cl", "stages/accumulate_aov.cl"));
+                                         "stages/shade_ply.cl", "stages/shade_fibre.cl", "stages/shade_surface.cl",
+                                         "stages/connect.cl", "stages/compact.cl", "stages/accumulate.cl",
+                                         "stages/accumulate_aov.cl"));
 
 }  // namespace
 }  // namespace wale
