@@ -26,6 +26,7 @@ struct FabricSpec {
   double height_offset = 0;  ///< metres along the base normal
   double tolerance = 0.05;   ///< ply radii
   double patches_per_cell = 12;  ///< wanted size of a UV cell
+  bool places = false;           ///< fill Fabric::place
 };
 
 /// One yarn, cut to its chart: `plies` polylines of `count` vertices each, ply p at first_vertex + p*count.
@@ -43,6 +44,14 @@ struct Anchor {
   float height = 0;              ///< metres along the normal
   float nx = 0, ny = 0, nz = 0;  ///< frame normal in the flat knit
   float length = 0;              ///< rest length along the full ply, metres
+};
+
+/// Where a sample of a run lies on its strand, and in which stitch: what colours follow. One strand is knitted run after
+/// run, flat pieces to and fro, so that `along` goes on from run to run.
+struct StrandPlace {
+  float along = 0;     ///< metres of yarn
+  ivec2 stitch{0, 0};  ///< column and row, canonical where a chart is joined to itself
+  float u = 0, v = 0;  ///< base UV of the stitch's middle
 };
 
 /// A run of `intervals` consecutive segments of all plies of one yarn: the leaf of the tree.
@@ -78,6 +87,7 @@ struct Fabric {
   std::vector<dvec2> uv_per_metre;  ///< per chart: UV = uv_per_metre * (x, y), (x, y) in the flat knit
   std::vector<PlyRun> runs;
   std::vector<Anchor> anchors;  ///< per vertex
+  std::vector<StrandPlace> place;  ///< where FabricSpec::places: sample k of a run at first_vertex / plies + k
   std::vector<uint32_t> chart_of_triangle;
   std::vector<Patch> patches;  ///< sorted by cell
   std::vector<UvGrid> grids;   ///< per chart

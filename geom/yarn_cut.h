@@ -25,6 +25,7 @@ class YarnCutter {
   ChartPoint extrapolate(const Sample& from, dvec2 uv) const;
   /// Appends the samples begin, begin+1, ... of a yarn; a closed yarn's continue past its end by whole laps.
   void add_run(const FlatYarn& yarn, size_t begin, size_t count, bool ghost_ends);
+  void add_places(const FlatYarn& yarn, size_t begin, size_t count, bool ghost_ends);
   Anchor anchor_of(const FlatYarn& yarn, size_t vertex, const Sample& centre, dvec2 uv) const;
 
   Fabric& fabric_;
@@ -34,6 +35,7 @@ class YarnCutter {
   std::vector<dvec2>& uv_;
   const ChartLocator locator_;
   std::vector<Sample> samples_;
+  double strand_ = 0;  ///< metres of yarn laid so far
 };
 
 }  // namespace wale

@@ -18,6 +18,7 @@ std::string Features::options() const {
   define(environment, "W_HAS_ENVIRONMENT");
   define(lights, "W_HAS_LIGHTS");
   define(aovs, "W_AOVS");
+  define(ply_colors, "W_HAS_PLY_COLORS");
   return out;
 }
 
@@ -35,6 +36,7 @@ Features analyse(const World& world, const IntegratorScene& integrator, bool aov
   f.environment = world.environment.radiance.w != 0;
   f.lights = !world.lights.lights.empty() && integrator.light_sampling != "bsdf";
   f.aovs = aovs;
+  f.ply_colors = !world.ply_colors.empty();
   f.local_stage = local_stage(integrator);
   f.lanes = integrator.lanes ? integrator.lanes : device_lanes;
   return f;
@@ -60,6 +62,9 @@ std::vector<Reason> explain(const World& world, const IntegratorScene& integrato
        : integrator.light_sampling == "bsdf" ? "integrator.light_sampling is \"bsdf\""
                                              : "no light to sample"},
       {"feature images", f.aovs, f.aovs ? "an .exr is written" : "only .png is written"},
+      {"varying colours", f.ply_colors,
+       f.ply_colors ? "fabrics: " + names(world.colored_fabrics, [](const auto& n) { return n; })
+                    : "no plies, stripes, heather or color_image"},
       {"local stage " + integrator.local_stage, f.plies, f.plies ? "integrator.local_stage" : "no fabric in the scene"},
       {fmt::format("{} lanes", f.lanes), true, integrator.lanes ? "integrator.lanes" : "width of the device's vectors"},
   };

@@ -14,6 +14,7 @@ struct Features {
   bool plies = false, triangles = false, spheres = false;
   bool environment = false, lights = false;  ///< lights: something is sampled by next-event estimation
   bool aovs = false;
+  bool ply_colors = false;  ///< colours that vary over the cloth
   LocalStage local_stage = LocalStage::exact;
   int lanes = 1;
 

@@ -40,6 +40,7 @@ SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage st
     : device_(device), stage_(stage), fabric_(upload_fabrics(device, inputs_of(world), world.origin, stage)) {
   const TriangleTree tree = build_triangle_tree(corners_of(world.triangles));
   ply_materials_ = Buffer<WPlyMaterial>(device, world.ply_materials);
+  ply_colors_ = Buffer<uint32_t>(device, world.ply_colors);
   triangles_ = Buffer<float>(device, in_order(world.triangles, tree.order));
   if (!tree.order.empty()) {
     tri_nodes_ = Buffer<uint32_t>(device, tree.tree.words);
@@ -111,6 +112,7 @@ std::map<std::string, uint64_t> SceneDevice::bytes() const {
           {"environment", env_texels_.bytes() + env_cdf_.bytes()},
           {"lights", lights_.bytes() + light_cdf_.bytes() + light_triangles_.bytes()},
           {"materials", ply_materials_.bytes() + surface_materials_.bytes()},
+          {"ply colours", ply_colors_.bytes()},
           {"UV cells", stage_ == LocalStage::exact
                            ? 0
                            : fabric_.cell_triangles.bytes() + fabric_.cell_segments.bytes() + fabric_.base_uv.bytes()}};

@@ -19,6 +19,7 @@ class SceneDevice {
 
   const cl::Buffer& vertices() const { return fabric_.vertices.cl(); }
   const cl::Buffer& ply_materials() const { return ply_materials_.cl(); }
+  const cl::Buffer& ply_colors() const { return ply_colors_.cl(); }
   const cl::Buffer& triangles() const { return triangles_.cl(); }
   const cl::Buffer& spheres() const { return spheres_.cl(); }
   const cl::Buffer& surface_materials() const { return surface_materials_.cl(); }
@@ -34,6 +35,7 @@ class SceneDevice {
   LocalStage stage_;
   FabricDevice fabric_;
   Buffer<WPlyMaterial> ply_materials_;
+  Buffer<uint32_t> ply_colors_;
   Buffer<float> triangles_;
   Buffer<uint32_t> tri_nodes_;
   Buffer<float> tri_leaves_;

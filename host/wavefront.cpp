@@ -99,7 +99,10 @@ void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
   if (kernels_.contains("shade_ply")) {
     auto& k = kernel("shade_ply");
     next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1)));
-    set_args(k, next, scene_.vertices(), scene_.ply_materials(), aov_.cl(), ply_list_.cl(), queue_counts_.cl(), kHits);
+    set_args(k, next, scene_.vertices(), scene_.ply_materials());
+    next += 2;
+    if (features_.ply_colors) set_args(k, next++, scene_.ply_colors());
+    set_args(k, next, aov_.cl(), ply_list_.cl(), queue_counts_.cl(), kHits);
   }
   if (kernels_.contains("shade_surface")) {
     auto& k = kernel("shade_surface");
