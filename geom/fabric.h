@@ -46,8 +46,8 @@ struct Anchor {
   float length = 0;              ///< rest length along the full ply, metres
 };
 
-/// Where a sample of a run lies on its strand, and in which stitch: what colours follow. One strand is knitted run after
-/// run, flat pieces to and fro, so that `along` goes on from run to run.
+/// Where a sample of a run lies on its strand, and in which stitch: what colours follow. One strand is knitted run
+/// after run, flat pieces to and fro, so that `along` goes on from run to run.
 struct StrandPlace {
   float along = 0;     ///< metres of yarn
   ivec2 stitch{0, 0};  ///< column and row, canonical where a chart is joined to itself
@@ -86,7 +86,7 @@ struct Fabric {
   std::vector<Chart> charts;
   std::vector<dvec2> uv_per_metre;  ///< per chart: UV = uv_per_metre * (x, y), (x, y) in the flat knit
   std::vector<PlyRun> runs;
-  std::vector<Anchor> anchors;  ///< per vertex
+  std::vector<Anchor> anchors;     ///< per vertex
   std::vector<StrandPlace> place;  ///< where FabricSpec::places: sample k of a run at first_vertex / plies + k
   std::vector<uint32_t> chart_of_triangle;
   std::vector<Patch> patches;  ///< sorted by cell

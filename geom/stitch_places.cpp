@@ -83,9 +83,9 @@ Course trace(const YarnChain& chain, const TileSamples& tile, const StitchPlaces
   course.sinkers = sinkers(course.at, course.stitches);
   if (course.sinkers.empty())
     for (int k = 0; k < course.stitches; ++k)
-      course.sinkers.push_back(size_t(std::lower_bound(course.share.begin(), course.share.end(),
-                                                       double(k) / course.stitches - 1e-9) -
-                                      course.share.begin()));
+      course.sinkers.push_back(
+          size_t(std::lower_bound(course.share.begin(), course.share.end(), double(k) / course.stitches - 1e-9) -
+                 course.share.begin()));
   const size_t begin = course.sinkers[0];
   const bool wraps = course.sinkers.size() == 1;
   const dvec2 end = wraps ? course.at[begin] + dvec2(course.stitches, 0) : course.at[course.sinkers[1]];

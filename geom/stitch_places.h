@@ -6,8 +6,8 @@
 namespace wale {
 
 /// Which stitch the samples of a tile belong to. A stitch is numbered (column, row); tile instance (i, j) holds columns
-/// i*stitches.x .. and rows j*stitches.y .., and a course yarn's loop is one stitch from the bottom of one sinker to the
-/// next, head included: the head lies in the next row's cell but is the loop's own.
+/// i*stitches.x .. and rows j*stitches.y .., and a course yarn's loop is one stitch from the bottom of one sinker to
+/// the next, head included: the head lies in the next row's cell but is the loop's own.
 struct StitchPlaces {
   std::vector<std::vector<ivec2>> of_curve;  ///< [curve][sample], relative to the link's own tile instance
   dvec2 phase{0.5, 0.5};                     ///< middle of stitch (c, r) at (c, r) + phase, in stitches

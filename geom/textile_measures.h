@@ -11,11 +11,11 @@ struct YarnSubstance {
 
 /// Figures that textile technologists state of a knitted cloth. SI units.
 struct TextileMeasures {
-  double yarn_per_stitch = 0;   ///< metres: the loop length
-  double ply_per_yarn = 0;      ///< metres of each ply in a metre of yarn: the twist's take-up
-  double yarn_mass = 0;         ///< kg per metre of yarn; times 1e6 in tex
-  double area_mass = 0;         ///< kg per square metre of cloth
-  double cover = 0;             ///< share of the flat cloth that plies hide, seen straight on
+  double yarn_per_stitch = 0;  ///< metres: the loop length
+  double ply_per_yarn = 0;     ///< metres of each ply in a metre of yarn: the twist's take-up
+  double yarn_mass = 0;        ///< kg per metre of yarn; times 1e6 in tex
+  double area_mass = 0;        ///< kg per square metre of cloth
+  double cover = 0;            ///< share of the flat cloth that plies hide, seen straight on
   double tex() const { return 1e6 * yarn_mass; }
   /// Munden's tightness factor sqrt(tex) / loop length in cm.
   double tightness() const;

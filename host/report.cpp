@@ -50,9 +50,12 @@ Json fabric_json(const Fabric& f, const MeshReport& mesh) {
 }
 
 Json textile_json(const TextileMeasures& m) {
-  return {{"area_mass_kg_m2", m.area_mass}, {"loop_length_m", m.yarn_per_stitch},
-          {"yarn_tex", m.tex()},            {"tightness_factor", m.tightness()},
-          {"cover_factor", m.cover},        {"openness", 1 - m.cover},
+  return {{"area_mass_kg_m2", m.area_mass},
+          {"loop_length_m", m.yarn_per_stitch},
+          {"yarn_tex", m.tex()},
+          {"tightness_factor", m.tightness()},
+          {"cover_factor", m.cover},
+          {"openness", 1 - m.cover},
           {"ply_take_up", m.ply_per_yarn}};
 }
 
@@ -96,8 +99,9 @@ std::string build_report_text(const World& world, const std::vector<TextileMeasu
                        1e3 * f.yarn_radius, 1e3 * f.ply_radius);
     if (i < textile.size()) {
       const TextileMeasures& t = textile[i];
-      out += fmt::format("  textile    {:.0f} g/m^2, yarn of {:.0f} tex, loop length {:.2f} mm, tightness factor {:.1f}\n",
-                         1e3 * t.area_mass, t.tex(), 1e3 * t.yarn_per_stitch, t.tightness());
+      out +=
+          fmt::format("  textile    {:.0f} g/m^2, yarn of {:.0f} tex, loop length {:.2f} mm, tightness factor {:.1f}\n",
+                      1e3 * t.area_mass, t.tex(), 1e3 * t.yarn_per_stitch, t.tightness());
       out += fmt::format("  cover      {:.1f} % of the flat cloth, openness {:.1f} %\n", 100 * t.cover,
                          100 * (1 - t.cover));
     }

@@ -32,7 +32,8 @@ struct PatternSource {
   PatternHints hints;
 };
 
-/// Fitted parameters of the ply BSDF given directly (docs/appearance.md); each replaces the preset's. Angles in radians.
+/// Fitted parameters of the ply BSDF given directly (docs/appearance.md); each replaces the preset's. Angles in
+/// radians.
 struct Scattering {
   std::optional<double> optical_radius;                                                       ///< tau_e
   std::optional<double> surface_share, surface_rim;                                           ///< e_r, e_r_h4
@@ -71,8 +72,8 @@ struct PlyAppearance {
   std::optional<double> fibre_twist;     ///< angle of the surface fibres to the ply axis, radians, signed
   Scattering scattering;
   Fibres fibres;
-  std::vector<Rgb> plies;              ///< ply i of the yarn has colour i mod n
-  std::vector<Stripe> stripes;         ///< one after the other along the yarn, then again from the first
+  std::vector<Rgb> plies;                    ///< ply i of the yarn has colour i mod n
+  std::vector<Stripe> stripes;               ///< one after the other along the yarn, then again from the first
   double heather_yarn = 0, heather_ply = 0;  ///< relative spread of lightness per full yarn and per ply
 };
 
@@ -92,10 +93,10 @@ struct MaterialSpec {
 
 /// An image that colours stitches.
 struct ColorImage {
-  std::filesystem::path file;       ///< absolute; empty = none
-  bool per_stitch = false;          ///< a pixel is a stitch; else the image lies over the base mesh's UV
-  dvec2 origin{0, 0}, size{1, 1};   ///< UV of the image's lower left corner, and its extent; stitches when per_stitch
-  bool repeat = false;              ///< else stitches beyond the image keep the material's colour
+  std::filesystem::path file;      ///< absolute; empty = none
+  bool per_stitch = false;         ///< a pixel is a stitch; else the image lies over the base mesh's UV
+  dvec2 origin{0, 0}, size{1, 1};  ///< UV of the image's lower left corner, and its extent; stitches when per_stitch
+  bool repeat = false;             ///< else stitches beyond the image keep the material's colour
 };
 
 struct FabricScene {

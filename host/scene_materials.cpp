@@ -51,8 +51,7 @@ void check_pairs(const std::string& path, const JsonNode& node) {
       fail(node[key], path + "." + key, "cannot be given together with \"reflect\" and \"transmit\"");
   if (!node.has("scattering") || !node["scattering"].has("optical_radius")) return;
   for (const char* key : {"optical_radius", "translucency"})
-    if (node.has(key))
-      fail(node[key], path + "." + key, "cannot be given together with \"scattering.optical_radius\"");
+    if (node.has(key)) fail(node[key], path + "." + key, "cannot be given together with \"scattering.optical_radius\"");
 }
 
 Fibres fibres_of(const JsonNode& node) {
@@ -111,9 +110,11 @@ void join_material_files(JsonNode& scene, const std::filesystem::path& folder) {
     const auto path = std::filesystem::absolute(folder / file->text).lexically_normal();
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored)) continue;
-    const JsonNode base = read_json(path);
+    JsonNode base = read_json(path);
     if (base.kind != JsonNode::Kind::object)
       fail(base, "materials." + name, "a ply material is needed in this file, not {}", base.describe());
+    if (JsonNode* fitted = base.find("scattering"); fitted && (node.has("optical_radius") || node.has("translucency")))
+      std::erase_if(fitted->members, [](const JsonNode::Member& m) { return m.key == "optical_radius"; });
     if (const JsonNode* again = base.find("file"))
       fail(*again, "materials." + name + ".file", "a material file cannot name another one");
     join(node, base, true);

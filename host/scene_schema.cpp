@@ -118,7 +118,8 @@ Type fabric() {
           {"height_offset", length(kAnyLength), "along the normal of the base mesh", "0"},
           {"tolerance", number({1e-4, 1}), "of the ply curves, in ply radii", "0.05"},
           {"material", text(), "name of a ply material; absent = wool"},
-          {"color_image", color_image_type(), "one colour per stitch from an image; goes before the material's colours"},
+          {"color_image", color_image_type(),
+           "one colour per stitch from an image; goes before the material's colours"},
       },
       {{{"repeats", "gauge", "uv_metres"}, true}});
 }

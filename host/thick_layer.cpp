@@ -70,14 +70,14 @@ ThickLayer::ThickLayer(const WPlyMaterial& m) {
       const double fresnel = m.f0 + (1 - double(m.f0)) * std::pow(1 - cos_f, 5);
       const double surface = std::clamp(fresnel * m.e_r * (1 + m.e_r_h4 * h * h * h * h), 0.0, 1.0);
 
-      // Cosine between the way in, -wv, and the mean way out, per lobe. In the frame of a lobe's axis wv = (cos, 0, sin).
+      // Cosine between the way in, -wv, and the mean way out, per lobe. In the frame of a lobe's axis wv = (cos, 0,
+      // sin).
       const double body_cos = mean_cos(sin_v, cos_v, v), body_sin = sin_v * sin_v * mean_sin_factor(v);
       const double g_f = body_sin - cos_v * body_cos * forward_width * std::cos(center_f);
       const double g_b = body_sin - cos_v * body_cos * back_width * std::cos(center_b);
       // The normal's azimuth about the surface fibres, whose frame turns wv into (cos_f, 0, sin_f).
       const double facing = cos_f > 1e-9 ? std::clamp(dot(n, wv) / cos_f, 0.0, 1.0) : 1;
-      const double g_r =
-          sin_f * sin_f * mean_sin_factor(v_r) - cos_f * mean_cos(sin_f, cos_f, v_r) * facing * kPi / 4;
+      const double g_r = sin_f * sin_f * mean_sin_factor(v_r) - cos_f * mean_cos(sin_f, cos_f, v_r) * facing * kPi / 4;
       total += weight;
       cosines += weight * (surface * g_r + (1 - surface) * (forward * g_f + (1 - forward) * g_b));
       nodes_.push_back({weight, surface, fresnel, std::max(m.n0 + m.n1 * c, 1.0)});

@@ -10,9 +10,9 @@ namespace wale {
 /// The layer is a uniform, isotropically lit medium: van de Hulst's R_inf(A, g) for semi-infinite media (Multiple Light
 /// Scattering 1980, volume 2, table 38; the fit of Christensen and Burley, Approximate Reflectance Profiles 2015):
 ///   R = (1-s)(1-0.139 s)/(1+1.17 s),  s = sqrt((1-A)/(1-A g)).
-/// A is the ply's albedo after a collision by the law of docs/appearance.md, g the mean cosine of its scattering at white
-/// fibres, both averaged over the places and angles at which an isotropic field meets a ply. How far that is from knitted
-/// cloth is in docs/appearance.md.
+/// A is the ply's albedo after a collision by the law of docs/appearance.md, g the mean cosine of its scattering at
+/// white fibres, both averaged over the places and angles at which an isotropic field meets a ply. How far that is from
+/// knitted cloth is in docs/appearance.md.
 class ThickLayer {
  public:
   /// `material` without its colour; one that gives body colours directly is a bug.

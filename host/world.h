@@ -25,10 +25,10 @@ struct World {
   std::vector<Fabric> fabrics;
   std::vector<MeshReport> fabric_mesh_reports;
   std::vector<WPlyMaterial> ply_materials;
-  std::vector<uint32_t> ply_colors;       ///< per vertex of all fabrics (host/ply_colors.h); empty where none varies
+  std::vector<uint32_t> ply_colors;          ///< per vertex of all fabrics (host/ply_colors.h); empty where none varies
   std::vector<std::string> colored_fabrics;  ///< whose colours vary
-  std::vector<uint32_t> fabric_material;  ///< per fabric, into ply_materials
-  std::vector<float> triangles;           ///< W_TRIANGLE_WORDS per triangle, see stages/shade_surface.cl
+  std::vector<uint32_t> fabric_material;     ///< per fabric, into ply_materials
+  std::vector<float> triangles;              ///< W_TRIANGLE_WORDS per triangle, see stages/shade_surface.cl
   std::vector<WSphere> spheres;
   std::vector<WSurfaceMaterial> surface_materials;
   LightTables lights;

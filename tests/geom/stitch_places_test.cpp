@@ -112,8 +112,7 @@ TEST(StitchPlaces, RoundsOfATube) {
     }
     if (!run.ghost_ends) continue;
     EXPECT_EQ(fabric.place[run.first_vertex / 2].stitch, fabric.place[run.first_vertex / 2 + run.count - 3].stitch);
-    starts.emplace_back(fabric.place[run.first_vertex / 2 + 1].along,
-                        fabric.place[run.first_vertex / 2 + 1].stitch.y);
+    starts.emplace_back(fabric.place[run.first_vertex / 2 + 1].along, fabric.place[run.first_vertex / 2 + 1].stitch.y);
   }
   size_t whole = 0;
   for (const auto& [row, c] : columns) {

@@ -33,8 +33,8 @@ constexpr double kPi = std::numbers::pi;
 
 TEST(TextileMeasures, OneStraightPly) {
   // Yarns of radius 0.25 mm every 1.2 mm, 3 mm a stitch: a cylinder of fibre, packed to one half.
-  const TextileMeasures m = measure_textile(straight(0.003, 0.0012, 0.00025), yarn_of(1, 0.00025, 0), {0.003, 0.0012},
-                                            {1310, 0.5});
+  const TextileMeasures m =
+      measure_textile(straight(0.003, 0.0012, 0.00025), yarn_of(1, 0.00025, 0), {0.003, 0.0012}, {1310, 0.5});
   const double kg_per_metre = 1310 * 0.5 * kPi * 0.00025 * 0.00025;
   EXPECT_NEAR(m.yarn_per_stitch, 0.003, 1e-9);
   EXPECT_NEAR(m.ply_per_yarn, 1, 1e-9);
@@ -52,8 +52,8 @@ TEST(TextileMeasures, YarnsThatOverlapCoverOnce) {
 
 // A tile that is stretched on the cloth: lengths follow the cloth, not the pattern.
 TEST(TextileMeasures, MeasuresAreOfTheCloth) {
-  const TextileMeasures m = measure_textile(straight(0.003, 0.0012, 0.00025), yarn_of(1, 0.0005, 0), {0.006, 0.0036},
-                                            {1540, 0.6});
+  const TextileMeasures m =
+      measure_textile(straight(0.003, 0.0012, 0.00025), yarn_of(1, 0.0005, 0), {0.006, 0.0036}, {1540, 0.6});
   EXPECT_NEAR(m.yarn_per_stitch, 0.006, 1e-9);
   EXPECT_NEAR(m.cover, 1.0 / 3.6, 0.003);
   EXPECT_NEAR(m.area_mass, 1540 * 0.6 * kPi * 0.0005 * 0.0005 / 0.0036, 1e-5);

@@ -63,8 +63,9 @@ TEST(MaterialFile, ErrorsNameTheFile) {
   EXPECT_NE(refused("[1]").find("a ply material is needed in this file, not a list of 1"), std::string::npos);
   EXPECT_NE(refused(R"({"file": "other.json"})").find("cannot name another one"), std::string::npos);
   EXPECT_NE(refused("{").find("measured.json"), std::string::npos);
-  EXPECT_NE(user_message([] { yarn_of(R"({"type": "ply", "file": "yarns/measurd.json"})"); })
-                .find("did you mean \"measured.json\"?"),
+  EXPECT_NE(user_message([] {
+              yarn_of(R"({"type": "ply", "file": "yarns/measurd.json"})");
+            }).find("did you mean \"measured.json\"?"),
             std::string::npos);
 }
 

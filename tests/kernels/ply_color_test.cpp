@@ -55,13 +55,13 @@ TEST(PlyColor, ReplacesFibresOrTintsBodies) {
   const std::vector<cl_uint> words = {0, pack_ply_color(tint)};
   PlyAppearance fibres;
   fibres.fibre_color = Rgb{0.9, 0.8, 0.7};
-  const auto f = runner.run("colored", 2, 9, runner.upload<WPlyMaterial>({ply_material(fibres)}),
-                            runner.upload<cl_uint>(words));
+  const auto f =
+      runner.run("colored", 2, 9, runner.upload<WPlyMaterial>({ply_material(fibres)}), runner.upload<cl_uint>(words));
   PlyAppearance bodies;
   bodies.forward = Rgb{0.5, 0.6, 0.7};
   bodies.back = Rgb{0.2, 0.3, 0.4};
-  const auto b = runner.run("colored", 2, 9, runner.upload<WPlyMaterial>({ply_material(bodies)}),
-                            runner.upload<cl_uint>(words));
+  const auto b =
+      runner.run("colored", 2, 9, runner.upload<WPlyMaterial>({ply_material(bodies)}), runner.upload<cl_uint>(words));
   for (int k = 0; k < 3; ++k) {
     EXPECT_FLOAT_EQ(float(f[k]), float((*fibres.fibre_color)[k])) << "no word, no change";
     EXPECT_FLOAT_EQ(float(b[3 + k]), float((*bodies.forward)[k]));
