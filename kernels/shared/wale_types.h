@@ -47,21 +47,20 @@ typedef int32_t w_int;
 #define W_LEAF_TAU 7      /* float, effective optical radius of the ply: pass-through exp(-2 tau cos gamma) */
 #define W_LEAF_CELL 8     /* UV cell that owns the patch (global number) */
 #define W_LEAF_FABRIC 9
-#define W_LEAF_ENDS                                                                                                 \
-  10                  /* bit 0: the first segment starts at an open end of the yarn; bit 1: the last one ends there \
-                       */
-#define W_LEAF_PLY 11 /* number of the run's first ply, over all fabrics */
+#define W_LEAF_ENDS 10 /* bit 0: the first segment starts at an open end of the yarn; bit 1: the last one ends there \
+                        */
+#define W_LEAF_PLY 11  /* number of the run's first ply, over all fabrics */
 /* Hit code of a ply segment: leaf offset (16-byte units) << 4 | lane. */
 
 /* --- stored ply vertex: 7 floats, 28 bytes: position, frame normal, rest length along the full ply -----------------
    The length starts anywhere (a hash of the ply, so that neighbours do not look alike) and wraps at W_LENGTH_PERIOD ply
-   radii: a float then keeps the phase of the fibres to 1e-4 rad on any length of yarn. All that winds along a ply does
-   so a whole number of times in one period (w_turns_per_length). */
+   radii: a float then keeps the phase of the fibres to 1e-4 rad on any length of yarn. All that winds along a ply does so
+   a whole number of times in one period (w_turns_per_length). */
 #define W_VERTEX_WORDS 7
 #define W_LENGTH_PERIOD 4096.0f
 
-/* Colour of the segment that starts at a vertex, where colours vary: 10 bits q a channel from the lowest up, c = 1 - (1
-   - q/1023)^2. Without W_COLOR_GIVEN the material's own colour holds. */
+/* Colour of the segment that starts at a vertex, where colours vary: 10 bits q a channel from the lowest up,
+   c = 1 - (1 - q/1023)^2. Without W_COLOR_GIVEN the material's own colour holds. */
 #define W_COLOR_GIVEN 0x40000000u
 #define W_COLOR_MAX 1023u
 
@@ -114,8 +113,8 @@ typedef struct WPlyMaterial {
 
 /* Far-field scattering of one fibre (docs/appearance.md): R at the surface, TT through it. */
 typedef struct WFibreMaterial {
-  w_float4 reflect;      /* rgb reflectance at normal incidence (Schlick) */
-  w_float4 transmit;     /* rgb colour of light that went through; w unused */
+  w_float4 reflect;  /* rgb reflectance at normal incidence (Schlick) */
+  w_float4 transmit; /* rgb colour of light that went through; w unused */
   float beta_r, beta_tt; /* longitudinal widths, radians */
   float gamma_tt;        /* azimuthal width of TT, radians */
   float pad0;
