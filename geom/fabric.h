@@ -35,6 +35,7 @@ struct FabricSpec {
   Detail detail = Detail::maps;
   FibreRecipe fibres;  ///< what its plies are made of
   FlyawaySpec flyaways;
+  bool places = false;  ///< fill Fabric::place
 };
 
 /// Largest distance of an explicit fibre's polyline from its curve, fibre radii.
@@ -53,7 +54,10 @@ struct PlyRun {
   float radius = 0;   ///< of the curves, metres
   uint32_t yarn = 0;  ///< full yarn that it was cut from
   uint32_t chart = 0;
-  bool ghost_ends = false;  ///< closed yarn: first and last segment are neighbours only, not traced, no caps
+  uint32_t ply = 0;          ///< kind fibre: of which ply of the yarn
+  uint32_t first_place = 0;  ///< its first sample's Fabric::place, where they are filled
+  bool one_place = false;    ///< a flyaway: all its vertices share that of its root
+  bool ghost_ends = false;   ///< closed yarn: first and last segment are neighbours only, not traced, no caps
 };
 
 /// Vertex of the flat knit tied to the base mesh: what kernels/warp.cl reads.
@@ -63,6 +67,14 @@ struct Anchor {
   float height = 0;              ///< metres along the normal
   float nx = 0, ny = 0, nz = 0;  ///< frame normal in the flat knit
   float length = 0;              ///< rest length along the full ply, metres, wrapped: see geom/stored_length.h
+};
+
+/// Where a sample of a run lies on its strand, and in which stitch: what colours follow. One strand is knitted run
+/// after run, flat pieces to and fro, so that `along` goes on from run to run.
+struct StrandPlace {
+  float along = 0;     ///< metres of yarn
+  ivec2 stitch{0, 0};  ///< column and row, canonical where a chart is joined to itself
+  float u = 0, v = 0;  ///< base UV of the stitch's middle
 };
 
 /// `intervals` consecutive segments of all curves of one run: the leaf of the tree.
@@ -98,7 +110,8 @@ struct Fabric {
   std::vector<Chart> charts;
   std::vector<dvec2> uv_per_metre;  ///< per chart: UV = uv_per_metre * (x, y), (x, y) in the flat knit
   std::vector<PlyRun> runs;
-  std::vector<Anchor> anchors;  ///< per vertex
+  std::vector<Anchor> anchors;     ///< per vertex
+  std::vector<StrandPlace> place;  ///< where FabricSpec::places: sample k of a run at first_vertex / plies + k
   std::vector<uint32_t> chart_of_triangle;
   std::vector<Patch> patches;  ///< sorted by cell
   std::vector<UvGrid> grids;   ///< per chart

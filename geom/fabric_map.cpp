@@ -107,6 +107,7 @@ void set_yarn(const Pattern& pattern, const FabricSpec& spec, double z_scale, Fa
   map.yarn_radius = pattern.yarn_radius * z_scale * spec.thickness;
   map.yarn.plies = spec.plies;
   map.yarn.tolerance = spec.tolerance;
+  map.yarn.places = spec.places;
   map.yarn.twist = spec.twist_pitch == 0 ? 0 : 1 / (spec.twist_pitch * map.yarn_radius);
   fill_yarn(map.yarn, map.yarn_radius);
   if (spec.ply_radius > 0) set_ply_radius(spec, map);
@@ -173,6 +174,8 @@ FabricMap map_fabric(const BaseMesh& mesh, const std::vector<Chart>& charts, con
     if (!charts[c].joins.empty()) map.snapped.push_back(snapped);
     const dvec2 tile = chart.tile_uv * chart.metric;
     chart.scale = dvec3(tile / pattern.period, z_scale);
+    chart.stitch = tile / stitches;
+    chart.stitches_per_tile = ivec2(stitches);
     chart.half_stitch = 0.5 * std::min(tile.x / stitches.x, tile.y / stitches.y);
   }
   return map;

@@ -14,6 +14,8 @@ struct ChartMap {
   dvec3 scale{1, 1, 1};      ///< pattern metres -> cloth metres
   InstanceRect rect;         ///< tiles that cover the chart and a margin of one tile
   double half_stitch = 0;    ///< metres: how far yarns run past a border
+  dvec2 stitch{1, 1};        ///< size of a stitch, metres
+  ivec2 stitches_per_tile{1, 1};
 };
 
 /// The fabric's scale, worked out from one of its three keys.

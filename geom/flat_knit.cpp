@@ -6,6 +6,7 @@
 #include "geom/cycle_samples.h"
 #include "geom/error.h"
 #include "geom/ply_frames.h"
+#include "geom/stitch_places.h"
 
 namespace wale {
 namespace {
@@ -15,8 +16,9 @@ constexpr double kTwoPi = 2 * std::numbers::pi;
 /// Lays the tile's samples along full yarns.
 class Layer {
  public:
-  Layer(const Pattern& pattern, const TileSamples& tile, const YarnSpec& spec, dvec3 scale)
+  Layer(const Pattern& pattern, const PartnerMap& partners, const TileSamples& tile, const YarnSpec& spec, dvec3 scale)
       : tile_(tile), spec_(spec), period_(pattern.period.x * scale.x, pattern.period.y * scale.y, 0) {
+    if (spec.places) places_ = stitch_places(pattern, partners, tile, scale);
     for (int ply = 0; ply < spec.plies; ++ply) {
       cos_.push_back(std::cos(kTwoPi * ply / spec.plies));
       sin_.push_back(std::sin(kTwoPi * ply / spec.plies));
@@ -30,6 +32,7 @@ class Layer {
     for (const Link& link : chain.links) count += tile_.of_curve[link.curve].centre.size();
     yarn.centre.resize(count);
     yarn.position.resize(count * spec_.plies);
+    if (spec_.places) yarn.place.resize(count);
 
     const LinkSamples& first = tile_.of_curve[chain.links[0].curve];
     const CycleSamples& cycle = tile_.cycles[first.cycle];
@@ -39,13 +42,18 @@ class Layer {
     int pass = 0;
     for (const Link& link : chain.links) {
       const LinkSamples& samples = tile_.of_curve[link.curve];
-      for (size_t i = 0; i < samples.centre.size(); ++i) put(yarn, at++, samples, i, link.instance, pass, cycle);
+      for (size_t i = 0; i < samples.centre.size(); ++i, ++at) {
+        put(yarn, at, samples, i, link.instance, pass, cycle);
+        if (spec_.places) yarn.place[at] = place(link.curve, i, link.instance, pass * cycle.length);
+      }
       if (samples.order + 1 == cycle.links) ++pass;
     }
     if (!chain.closed) {
       put(yarn, at, tile_.of_curve[end_curve], 0, end_instance, pass, cycle);
+      if (spec_.places) yarn.place[at] = place(end_curve, 0, end_instance, pass * cycle.length);
     } else {
       add_ghosts(yarn, dvec3(chain.shift.x, chain.shift.y, 0) * period_);
+      if (spec_.places) add_ghost_places(yarn, double(chain.links.size()) / cycle.links * cycle.length);
     }
     frame_plies(yarn, spec_.plies);
     return yarn;
@@ -87,8 +95,25 @@ class Layer {
     for (int ply = 0; ply < spec_.plies; ++ply) repeat(&yarn.position[ply * count]);
   }
 
+  YarnPlace place(int curve, size_t i, ivec2 instance, double passed) const {
+    const ivec2 stitch = places_.of_curve[curve][i] + instance * places_.per_tile;
+    return {passed + tile_.of_curve[curve].arc[i] - start_, stitch, (dvec2(stitch) + places_.phase) * places_.size};
+  }
+
+  static void add_ghost_places(FlatYarn& yarn, double length) {
+    auto& place = yarn.place;
+    const size_t count = place.size();
+    place[count - 2] = place[1];
+    place[count - 1] = place[2];
+    place[0] = place[count - 3];
+    place[count - 2].along += length;
+    place[count - 1].along += length;
+    place[0].along -= length;
+  }
+
   const TileSamples& tile_;
   const YarnSpec& spec_;
+  StitchPlaces places_;
   dvec3 period_;
   std::vector<double> cos_, sin_;
   double start_ = 0, correction_ = 0;
@@ -99,7 +124,7 @@ class Layer {
 void knit_flat(const Pattern& pattern, const PartnerMap& partners, const YarnSpec& spec, dvec3 scale,
                const InstanceRect& rect, const std::function<void(FlatYarn&&)>& deliver) {
   const TileSamples tile = sample_tile(pattern, partners, spec, scale, rect.wrap);
-  Layer layer(pattern, tile, spec, scale);
+  Layer layer(pattern, partners, tile, spec, scale);
   for (const YarnChain& chain : stitch(pattern, partners, rect)) {
     const Link& last = chain.links.back();
     ivec2 end_instance = last.instance;

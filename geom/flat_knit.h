@@ -15,6 +15,14 @@ struct YarnSpec {
   double phase = 0;         ///< radians
   double tolerance = 0.02;  ///< largest distance of a ply polyline from its curve, in ply radii
   double winding = -1;      ///< 1/m: curvature of explicit fibres about the ply, whose tolerance it then is; < 0: none
+  bool places = false;      ///< say of every sample where on its yarn and in which stitch it lies
+};
+
+/// Where a sample lies on its yarn, and in which stitch.
+struct YarnPlace {
+  double along = 0;    ///< metres of yarn from the start of the full yarn (rest length of the axis)
+  ivec2 stitch{0, 0};  ///< column and row, see geom/stitch_places.h
+  dvec2 middle{0, 0};  ///< of the stitch, metres in the cloth
 };
 
 /// Ply and helix radius of n equal circles that fill a yarn of the given radius and touch their neighbours.
@@ -27,10 +35,11 @@ void fill_yarn(YarnSpec& spec, double yarn_radius);
 /// neighbours.
 struct FlatYarn {
   bool closed = false;
-  std::vector<dvec3> centre;    ///< yarn axis, metres in the cloth: x course, y wale, z through the fabric
-  std::vector<dvec3> position;  ///< ply axes
-  std::vector<dvec3> normal;    ///< unit, perpendicular to the ply's mean tangent: double-reflection frame of the ply
-  std::vector<double> length;   ///< metres of ply from the start of the full yarn (rest length)
+  std::vector<dvec3> centre;     ///< yarn axis, metres in the cloth: x course, y wale, z through the fabric
+  std::vector<dvec3> position;   ///< ply axes
+  std::vector<dvec3> normal;     ///< unit, perpendicular to the ply's mean tangent: double-reflection frame of the ply
+  std::vector<double> length;    ///< metres of ply from the start of the full yarn (rest length)
+  std::vector<YarnPlace> place;  ///< per sample where YarnSpec::places asks for it; a ghost's `along` goes on
 };
 
 /// Samples of one tile, the same in every instance: chosen by arc length so that the twisted ply polylines stay within

@@ -105,6 +105,8 @@ void YarnCutter::add(const FlatYarn& yarn) {
 }
 
 void YarnCutter::add_runs(const FlatYarn& yarn, const Stretch& stretch) {
+  first_place_ = static_cast<uint32_t>(fabric_.place.size());
+  if (!yarn.place.empty()) add_places(yarn, stretch);
   if (spec_.detail == Detail::fibres)
     add_fibre_runs(yarn, stretch);
   else
@@ -136,7 +138,37 @@ void YarnCutter::begin_run(const Stretch& stretch, PlyRun::Kind kind, size_t cur
   run.yarn = static_cast<uint32_t>(fabric_.report.full_yarns);
   run.chart = chart_;
   run.ghost_ends = stretch.ghost_ends;
+  run.first_place = first_place_;
   fabric_.runs.push_back(run);
+}
+
+void YarnCutter::add_places(const FlatYarn& yarn, const Stretch& stretch) {
+  const auto [begin, count, ghost_ends] = stretch;
+  const size_t total = yarn.centre.size(), period = yarn.closed ? total - 3 : total;
+  const double lap = yarn.closed ? yarn.place[total - 2].along - yarn.place[1].along : 0;
+  const auto along = [&, begin = begin](size_t i) {  // a closed yarn's samples go round
+    const size_t k = begin + i;
+    return k < total ? yarn.place[k].along : yarn.place[(k - 1) % period + 1].along + lap * double((k - 1) / period);
+  };
+  const double start = along(ghost_ends ? 1 : 0), length = along(ghost_ends ? count - 2 : count - 1) - start;
+  const bool back = !ghost_ends && fabric_.report.full_yarns % 2 == 1;
+  for (size_t i = 0; i < count; ++i) {
+    const size_t k = begin + i;
+    YarnPlace place = yarn.place[k < total ? k : (k - 1) % period + 1];
+    const dvec2 size = map_.stitch;
+    for (int axis = 0; axis < 2; ++axis) {
+      const int around = map_.rect.wrap[axis] * map_.stitches_per_tile[axis];
+      if (around <= 0) continue;
+      const int lo = map_.rect.lo[axis] * map_.stitches_per_tile[axis];
+      const int canonical = lo + ((place.stitch[axis] - lo) % around + around) % around;
+      place.middle[axis] += size[axis] * (canonical - place.stitch[axis]);
+      place.stitch[axis] = canonical;
+    }
+    const dvec2 uv = map_.uv_per_metre * place.middle;
+    const double done = along(i) - start;
+    fabric_.place.push_back({float(strand_ + (back ? length - done : done)), place.stitch, float(uv.x), float(uv.y)});
+  }
+  strand_ += length;
 }
 
 void YarnCutter::add_vertex(const Place& place, const dvec3& position, const dvec3& normal, float length) {

@@ -39,6 +39,7 @@ class YarnCutter {
   };
   static Place place_in(const FlatYarn& yarn, size_t sample);
   StoredLength length_of(const FlatYarn& yarn, size_t ply, double& lap) const;
+  void add_places(const FlatYarn& yarn, const Stretch& stretch);
   void add_runs(const FlatYarn& yarn, const Stretch& stretch);
   void add_ply_run(const FlatYarn& yarn, const Stretch& stretch);
   void add_fibre_runs(const FlatYarn& yarn, const Stretch& stretch);
@@ -58,6 +59,8 @@ class YarnCutter {
   std::vector<Sample> samples_;
   dvec2 lap_{0, 0};  ///< UV of one lap of a closed yarn
   std::vector<uint32_t> fibre_order_, fibre_groups_;
+  double strand_ = 0;         ///< metres of yarn laid so far
+  uint32_t first_place_ = 0;  ///< of the stretch that is being added
 };
 
 }  // namespace wale

@@ -8,6 +8,7 @@
 #include "host/atomic_file.h"
 #include "host/compare.h"
 #include "host/export_curves.h"
+#include "host/materials.h"
 #include "host/progress.h"
 #include "host/report.h"
 #include "host/stop.h"
@@ -36,13 +37,25 @@ void deliver(const std::filesystem::path& json_file, const std::string& json, co
   if (json_file != "-") fmt::print("{}", text);
 }
 
+std::vector<TextileMeasures> measures_of(const Scene& scene, const World& world) {
+  std::vector<TextileMeasures> out;
+  for (size_t i = 0; i < world.fabrics.size(); ++i) {
+    const FabricScene& fabric = scene.fabrics[i];
+    const PlyAppearance& yarn = scene.materials.at(size_t(fabric.material)).yarn;
+    out.push_back(measure_textile(world.fabrics[i], load_pattern(fabric.pattern), fabric.spec,
+                                  {fibre_density(yarn), fibre_recipe(yarn).packing}));
+  }
+  return out;
+}
+
 }  // namespace
 
 int run_build(const SceneArgs& args, const std::filesystem::path& json, const Loaders& loaders) {
   require_json_path(json);
   const Scene scene = read_scene(args.scene, args.set);
   const World world = world_of(scene, loaders, args.quiet);
-  deliver(json, build_report_json(world), build_report_text(world));
+  const std::vector<TextileMeasures> textile = measures_of(scene, world);
+  deliver(json, build_report_json(world, textile), build_report_text(world, textile));
   return 0;
 }
 

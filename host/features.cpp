@@ -21,6 +21,7 @@ std::string Features::options() const {
   define(detail, "W_HAS_DETAIL");
   define(paper_lobes, "W_PAPER_LOBES");
   define(aovs, "W_AOVS");
+  define(ply_colors, "W_HAS_PLY_COLORS");
   return out;
 }
 
@@ -43,6 +44,7 @@ Features analyse(const World& world, const IntegratorScene& integrator, bool aov
   f.detail = f.plies && world.fibres.any();
   f.paper_lobes = f.plies && integrator.ply_lobes == "paper";
   f.aovs = aovs;
+  f.ply_colors = !world.ply_colors.empty();
   f.local_stage = local_stage(integrator);
   f.lanes = integrator.lanes ? integrator.lanes : device_lanes;
   return f;
@@ -85,6 +87,9 @@ std::vector<Reason> explain(const World& world, const IntegratorScene& integrato
                  : "no fabric in the scene"},
       {"Lambert ply lobes", f.paper_lobes, "integrator.ply_lobes is \"" + integrator.ply_lobes + "\""},
       {"feature images", f.aovs, f.aovs ? "an .exr is written" : "only .png is written"},
+      {"varying colours", f.ply_colors,
+       f.ply_colors ? "fabrics: " + names(world.colored_fabrics, [](const auto& n) { return n; })
+                    : "no plies, stripes, heather or color_image"},
       {"local stage " + integrator.local_stage, curves, curves ? "integrator.local_stage" : "no fabric in the scene"},
       {fmt::format("{} lanes", f.lanes), true, integrator.lanes ? "integrator.lanes" : "width of the device's vectors"},
   };

@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "geom/error.h"
+#include "host/scattering_keys.h"
+#include "host/thick_layer.h"
 
 namespace wale {
 namespace {
@@ -15,6 +17,9 @@ namespace {
 // The ranges below are those that the scene's schema promises.
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kSharpest = 0.001;  // radians: a highlight sharper than this would be noise
+// At the ends of the artists' scales: the highlight's width, and the fibres' density, against the preset.
+constexpr double kGloss = 6, kGlossiest = 0.5 * kDegree, kDullest = 40 * kDegree;
+constexpr double kTranslucentTau = 4, kTranslucentDecay = 3;
 
 // One row per preset: bundles of dielectric fibres measured and fitted by bench/goniometer at normal incidence
 // (docs/appearance.md). Angles in degrees, logistic widths in radians, variances in rad^2, twist = tangent of the
@@ -69,6 +74,40 @@ const Preset& preset_of(const PlyAppearance& appearance) {
   return *preset;
 }
 
+float tangent(double angle, const char* what) {
+  if (!(std::abs(angle) < 89 * kDegree))
+    user_error("material: {} is {}; valid: above {:.6f}, below {:.6f}", what, angle, -89 * kDegree, 89 * kDegree);
+  return float(std::tan(angle));
+}
+
+void refuse_both(const PlyAppearance& a) {
+  if (a.forward.has_value() != a.back.has_value())
+    user_error("material: the body colours 'forward' and 'back' come together; '{}' is missing",
+               a.forward ? "back" : "forward");
+  const auto exclude = [](bool first, bool second, const char* one, const char* other) {
+    if (first && second) user_error("material: '{}' and '{}' exclude each other; give one of them", one, other);
+  };
+  exclude(a.color.has_value(), a.fibre_color.has_value(), "color", "fibre_color");
+  exclude(a.forward.has_value(), a.color || a.fibre_color, "forward and back", "color or fibre_color");
+  exclude(a.gloss.has_value(), a.roughness.has_value(), "gloss", "roughness");
+  exclude(a.translucency.has_value(), a.optical_radius || a.scattering.optical_radius, "translucency",
+          "optical_radius");
+  exclude(a.optical_radius.has_value(), a.scattering.optical_radius.has_value(), "optical_radius",
+          "scattering.optical_radius");
+}
+
+/// beta_R, radians: as given, or the preset's made narrower or wider by the gloss.
+double surface_width(const PlyAppearance& a, const Preset& preset) {
+  if (a.roughness) {
+    require_range(*a.roughness, 0, std::numbers::pi / 2, "roughness (radians)");
+    return std::max(*a.roughness, kSharpest);
+  }
+  const double beta = preset.beta * kDegree;
+  if (!a.gloss) return beta;
+  require_range(*a.gloss, 0, 1, "gloss");
+  return std::clamp(beta * std::pow(kGloss, 1 - 2 * *a.gloss), kGlossiest, kDullest);
+}
+
 }  // namespace
 
 const std::vector<std::string>& ply_presets() {
@@ -82,32 +121,17 @@ const std::vector<std::string>& ply_presets() {
 
 WPlyMaterial ply_material(const PlyAppearance& appearance) {
   const Preset* preset = &preset_of(appearance);
-  if (appearance.forward.has_value() != appearance.back.has_value())
-    user_error("material: the body colours 'forward' and 'back' come together; '{}' is missing",
-               appearance.forward ? "back" : "forward");
+  refuse_both(appearance);
 
   WPlyMaterial m{};
-  const bool direct = appearance.forward.has_value();
-  m.fibre = color4(appearance.color.value_or(preset->color), "color", direct ? 1.0f : 0.0f);
-  if (direct) {
-    m.forward = color4(*appearance.forward, "forward", 0);
-    m.back = color4(*appearance.back, "back", 0);
-  }
-  const double roughness = appearance.roughness.value_or(preset->beta * kDegree);
-  require_range(roughness, 0, std::numbers::pi / 2, "roughness (radians)");
-  m.beta_r = float(std::max(roughness, kSharpest));
   m.f0 = float(preset->fresnel);
   if (appearance.ior) {
     require_range(*appearance.ior, 1, 4, "ior");
     m.f0 = float(fresnel_of(*appearance.ior));
   }
-  m.tau_e = float(appearance.optical_radius.value_or(preset->tau_e));
-  require_range(m.tau_e, 0, 1e4, "optical_radius");
   m.tilt = float(preset->twist);
-  if (appearance.fibre_twist) {
-    require_range(*appearance.fibre_twist, -89 * kDegree, 89 * kDegree, "fibre_twist (radians)");
-    m.tilt = float(std::tan(*appearance.fibre_twist));
-  }
+  if (appearance.fibre_twist) m.tilt = tangent(*appearance.fibre_twist, "fibre_twist (radians)");
+  m.tau_e = float(preset->tau_e);
   m.e_r = float(preset->e_r);
   m.e_r_h4 = float(preset->e_r_h4);
   m.b = float(preset->b);
@@ -120,15 +144,54 @@ WPlyMaterial ply_material(const PlyAppearance& appearance) {
   m.v_e = float(preset->v_e);
   m.n0 = float(preset->n0);
   m.n1 = float(preset->n1);
+  for (const ScatteringKey& k : kScatteringKeys)
+    if (const auto& given = appearance.scattering.*k.given) {
+      const double unit = k.angle ? kDegree : 1;
+      require_range(*given, k.low * unit, k.high * unit, k.key);
+      m.*k.value = float(*given);
+    }
+  if (appearance.optical_radius) {
+    require_range(*appearance.optical_radius, 0, 1e4, "optical_radius");
+    m.tau_e = float(*appearance.optical_radius);
+  }
+  if (appearance.translucency) {
+    require_range(*appearance.translucency, 0, 1, "translucency");
+    const double from_preset = 1 - 2 * *appearance.translucency;
+    m.tau_e *= float(std::pow(kTranslucentTau, from_preset));
+    m.b *= float(std::pow(kTranslucentDecay, from_preset));
+  }
+  m.beta_r = float(surface_width(appearance, *preset));
+
+  const bool direct = appearance.forward.has_value();
+  m.fibre = color4(appearance.fibre_color.value_or(preset->color), "fibre_color", 0);
+  if (appearance.color) {
+    color4(*appearance.color, "color", 0);
+    m.fibre = color4(ThickLayer(m).fibre(*appearance.color), "fibre colour", 0);
+  }
+  if (direct) {
+    m.fibre.w = 1;
+    m.forward = color4(*appearance.forward, "forward", 0);
+    m.back = color4(*appearance.back, "back", 0);
+  }
   return m;
 }
 
 FibreRecipe fibre_recipe(const PlyAppearance& appearance) {
   const Preset& preset = preset_of(appearance);
+  const Fibres& given = appearance.fibres;
   FibreRecipe recipe;
-  recipe.fibres = appearance.fibres.value_or(preset.fibres);
-  recipe.packing = preset.packing;
-  recipe.twist = double(ply_material(appearance).tilt);
+  recipe.fibres = given.count.value_or(preset.fibres);
+  recipe.packing = given.packing.value_or(preset.packing);
+  recipe.twist = given.twist ? tangent(*given.twist, "twist of the fibres (radians)") : ply_material(appearance).tilt;
+  recipe.radial_beta = given.radial_beta.value_or(recipe.radial_beta);
+  recipe.radial_epsilon = given.radial_epsilon.value_or(recipe.radial_epsilon);
+  recipe.migration_min = given.migration_min.value_or(recipe.migration_min);
+  recipe.migration_rate = given.migration_rate.value_or(recipe.migration_rate);
+  recipe.seed = given.seed.value_or(recipe.seed);
+  if (recipe.fibres < 1 || recipe.fibres > 4096)
+    user_error("material: {} fibres in a ply; valid: 1 to 4096", recipe.fibres);
+  if (!(recipe.packing > 0 && recipe.packing <= 0.7))
+    user_error("material: a packing of {}; valid: above 0, up to 0.7", recipe.packing);
   return recipe;
 }
 
@@ -140,8 +203,13 @@ WFibreMaterial fibre_material(const PlyAppearance& appearance) {
   m.transmit = ply.fibre;
   m.transmit.w = 0;
   m.beta_r = ply.beta_r;
-  m.beta_tt = float(preset.beta_tt * kDegree);
-  m.gamma_tt = float(preset.gamma_tt * kDegree);
+  const auto width = [](const std::optional<double>& given, double degrees, const char* what) {
+    const double radians = given.value_or(degrees * kDegree);
+    require_range(radians, 0.01 * kDegree, 90 * kDegree, what);
+    return float(radians);
+  };
+  m.beta_tt = width(appearance.fibres.transmit_width, preset.beta_tt, "transmit_width (radians)");
+  m.gamma_tt = width(appearance.fibres.transmit_azimuth_width, preset.gamma_tt, "transmit_azimuth_width (radians)");
   return m;
 }
 

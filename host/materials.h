@@ -12,11 +12,13 @@ namespace wale {
 const std::vector<std::string>& ply_presets();
 
 /// Optical radius and BSDF parameters of an appearance: the preset's measured row (docs/appearance.md), then the
-/// scene's overrides. Throws a user error on an unknown preset, one body colour without the other, and values out of
-/// range: colours [0,1], roughness [0.001,1] rad, ior [1,3], optical radius [0,100], fibre twist within +-1.4 rad.
+/// scene's overrides; `color` becomes a fibre colour through host/thick_layer.h. Throws a user error on an unknown
+/// preset, one body colour without the other, two keys that exclude each other, and values outside the ranges that the
+/// scene's schema promises.
 WPlyMaterial ply_material(const PlyAppearance& appearance);
 
-/// The fibres that such a ply is made of: count, packing, twist. Same errors as ply_material.
+/// The fibres that such a ply is made of: count, packing, twist, which is that of the surface fibres unless `fibres`
+/// gives another. Same errors as ply_material.
 FibreRecipe fibre_recipe(const PlyAppearance& appearance);
 
 /// Scattering of one of its fibres. Same errors as ply_material.

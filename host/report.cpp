@@ -52,20 +52,32 @@ Json fabric_json(const Fabric& f, const MeshReport& mesh) {
   };
 }
 
+Json textile_json(const TextileMeasures& m) {
+  return {{"area_mass_kg_m2", m.area_mass},
+          {"loop_length_m", m.yarn_per_stitch},
+          {"yarn_tex", m.tex()},
+          {"tightness_factor", m.tightness()},
+          {"cover_factor", m.cover},
+          {"openness", 1 - m.cover},
+          {"ply_take_up", m.ply_per_yarn}};
+}
+
 }  // namespace
 
-std::string build_report_json(const World& world) {
+std::string build_report_json(const World& world, const std::vector<TextileMeasures>& textile) {
   Json json{{"fabrics", Json::array()},
             {"triangles", world.triangle_count()},
             {"spheres", world.spheres.size()},
             {"notes", world.notes},
             {"seconds", world.seconds}};
-  for (size_t i = 0; i < world.fabrics.size(); ++i)
+  for (size_t i = 0; i < world.fabrics.size(); ++i) {
     json["fabrics"].push_back(fabric_json(world.fabrics[i], world.fabric_mesh_reports[i]));
+    if (i < textile.size()) json["fabrics"].back()["textile"] = textile_json(textile[i]);
+  }
   return json.dump(2) + "\n";
 }
 
-std::string build_report_text(const World& world) {
+std::string build_report_text(const World& world, const std::vector<TextileMeasures>& textile) {
   std::string out;
   for (size_t i = 0; i < world.fabrics.size(); ++i) {
     const Fabric& f = world.fabrics[i];
@@ -88,6 +100,14 @@ std::string build_report_text(const World& world) {
         1e3 * r.tile_metres.x, 1e3 * r.tile_metres.y);
     out += fmt::format("  yarn       {} plies, yarn radius {:.4f} mm, ply radius {:.4f} mm\n", f.plies,
                        1e3 * f.yarn_radius, 1e3 * f.ply_radius);
+    if (i < textile.size()) {
+      const TextileMeasures& t = textile[i];
+      out +=
+          fmt::format("  textile    {:.0f} g/m^2, yarn of {:.0f} tex, loop length {:.2f} mm, tightness factor {:.1f}\n",
+                      1e3 * t.area_mass, t.tex(), 1e3 * t.yarn_per_stitch, t.tightness());
+      out += fmt::format("  cover      {:.1f} % of the flat cloth, openness {:.1f} %\n", 100 * t.cover,
+                         100 * (1 - t.cover));
+    }
     out += fmt::format("  knitted    {} full yarns, {} runs, {} segments, {} vertices ({} bytes each)\n", r.full_yarns,
                        r.runs, r.segments, r.vertices, W_VERTEX_WORDS * 4);
     if (r.fibres)

@@ -32,16 +32,49 @@ struct PatternSource {
   PatternHints hints;
 };
 
+/// Fitted parameters of the ply BSDF given directly (docs/appearance.md); each replaces the preset's. Angles in
+/// radians.
+struct Scattering {
+  std::optional<double> optical_radius;                                                       ///< tau_e
+  std::optional<double> surface_share, surface_rim;                                           ///< e_r, e_r_h4
+  std::optional<double> forward_decay, forward_width, forward_narrowing, forward_deflection;  ///< b, s_f0, e_f, d_f
+  std::optional<double> backward_width, backward_deflection;                                  ///< s_b, d_b
+  std::optional<double> variance_centre, variance_edge;                                       ///< v_c, v_e, rad^2
+  std::optional<double> hits_edge, hits_chord;                                                ///< n0, n1
+};
+
+/// What a ply is made of, where it is not the preset's; see FibreRecipe. Angles in radians.
+struct Fibres {
+  std::optional<int> count;
+  std::optional<double> packing, twist;
+  std::optional<double> radial_beta, radial_epsilon, migration_min, migration_rate;
+  std::optional<uint32_t> seed;
+  std::optional<double> transmit_width, transmit_azimuth_width;
+};
+
+/// One stretch of self-striping yarn.
+struct Stripe {
+  Rgb color{1, 1, 1};
+  double length = 0;  ///< metres of yarn
+};
+
 /// Appearance of plies: a preset, then what the scene overrides. Colours are scene-linear Rec. 709 in [0,1].
 struct PlyAppearance {
   std::string preset = "wool";       ///< cotton, wool, silk, polyester, acrylic, mohair
-  std::optional<Rgb> color;          ///< fibre colour C_f
+  std::optional<Rgb> color;          ///< shown by a thick layer of the cloth in diffuse light
+  std::optional<Rgb> fibre_color;    ///< C_f, instead of color
   std::optional<Rgb> forward, back;  ///< body colours directly (both or none)
   std::optional<double> roughness;   ///< beta_R, radians
+  std::optional<double> gloss;       ///< [0,1], instead of roughness; 0.5 = the preset's
   std::optional<double> ior;
   std::optional<double> optical_radius;  ///< tau_e
-  std::optional<int> fibres;             ///< in a ply
+  std::optional<double> translucency;    ///< [0,1], instead of optical_radius; 0.5 = the preset's
   std::optional<double> fibre_twist;     ///< angle of the surface fibres to the ply axis, radians, signed
+  Scattering scattering;
+  Fibres fibres;
+  std::vector<Rgb> plies;                    ///< ply i of the yarn has colour i mod n
+  std::vector<Stripe> stripes;               ///< one after the other along the yarn, then again from the first
+  double heather_yarn = 0, heather_ply = 0;  ///< relative spread of lightness per full yarn and per ply
 };
 
 struct SurfaceAppearance {
@@ -58,12 +91,21 @@ struct MaterialSpec {
   SurfaceAppearance surface;
 };
 
+/// An image that colours stitches.
+struct ColorImage {
+  std::filesystem::path file;      ///< absolute; empty = none
+  bool per_stitch = false;         ///< a pixel is a stitch; else the image lies over the base mesh's UV
+  dvec2 origin{0, 0}, size{1, 1};  ///< UV of the image's lower left corner, and its extent; stitches when per_stitch
+  bool repeat = false;             ///< else stitches beyond the image keep the material's colour
+};
+
 struct FabricScene {
   FabricSpec spec;
   MeshSource mesh;
   Transform transform;
   PatternSource pattern;
   int material = 0;  ///< index into Scene::materials, a ply material
+  ColorImage color_image;
 };
 
 /// A prop: mesh, sphere or an endless-looking ground quad.

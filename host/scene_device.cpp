@@ -44,6 +44,7 @@ SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage st
   fibre_offsets_ = Buffer<uint32_t>(device, world.fibres.offsets);
   fibre_candidates_ = Buffer<w_float4>(device, world.fibres.candidates);
   fibre_materials_ = Buffer<WFibreMaterial>(device, world.fibre_materials);
+  ply_colors_ = Buffer<uint32_t>(device, world.ply_colors);
   triangles_ = Buffer<float>(device, in_order(world.triangles, tree.order));
   if (!tree.order.empty()) {
     tri_nodes_ = Buffer<uint32_t>(device, tree.tree.words);
@@ -116,6 +117,7 @@ std::map<std::string, uint64_t> SceneDevice::bytes() const {
           {"lights", lights_.bytes() + light_cdf_.bytes() + light_triangles_.bytes()},
           {"fibre detail", fibre_details_.bytes() + fibre_offsets_.bytes() + fibre_candidates_.bytes()},
           {"materials", ply_materials_.bytes() + fibre_materials_.bytes() + surface_materials_.bytes()},
+          {"ply colours", ply_colors_.bytes()},
           {"UV cells", stage_ == LocalStage::exact
                            ? 0
                            : fabric_.cell_triangles.bytes() + fabric_.cell_segments.bytes() + fabric_.base_uv.bytes()}};

@@ -23,6 +23,7 @@ class SceneDevice {
   const cl::Buffer& fibre_offsets() const { return fibre_offsets_.cl(); }
   const cl::Buffer& fibre_candidates() const { return fibre_candidates_.cl(); }
   const cl::Buffer& fibre_materials() const { return fibre_materials_.cl(); }
+  const cl::Buffer& ply_colors() const { return ply_colors_.cl(); }
   const cl::Buffer& triangles() const { return triangles_.cl(); }
   const cl::Buffer& spheres() const { return spheres_.cl(); }
   const cl::Buffer& surface_materials() const { return surface_materials_.cl(); }
@@ -42,6 +43,7 @@ class SceneDevice {
   Buffer<uint32_t> fibre_offsets_;
   Buffer<w_float4> fibre_candidates_;
   Buffer<WFibreMaterial> fibre_materials_;
+  Buffer<uint32_t> ply_colors_;
   Buffer<float> triangles_;
   Buffer<uint32_t> tri_nodes_;
   Buffer<float> tri_leaves_;

@@ -3,6 +3,7 @@
 
 #include "geom/error.h"
 #include "host/scene.h"
+#include "host/scene_materials.h"
 #include "host/scene_nodes.h"
 #include "host/scene_overrides.h"
 #include "host/scene_schema.h"
@@ -104,39 +105,6 @@ IntegratorScene integrator_of(const JsonNode& node) {
   return out;
 }
 
-MaterialSpec material_of(const std::string& name, const JsonNode& node) {
-  MaterialSpec material;
-  material.name = name;
-  material.ply = node["type"].text == "ply";
-  if (material.ply) {
-    if (node.has("reflect") != node.has("transmit")) {
-      const bool reflect = node.has("reflect");
-      fail(node[reflect ? "reflect" : "transmit"], "materials." + name + (reflect ? ".reflect" : ".transmit"),
-           "\"reflect\" and \"transmit\" are given both or not at all; \"{}\" is missing",
-           reflect ? "transmit" : "reflect");
-    }
-    if (node.has("color") && node.has("reflect"))
-      fail(node["color"], "materials." + name + ".color", "cannot be given together with \"reflect\" and \"transmit\"");
-    material.yarn = {node["preset"].text,
-                     maybe_color(node, "color"),
-                     maybe_color(node, "transmit"),
-                     maybe_color(node, "reflect"),
-                     maybe_number(node, "roughness"),
-                     maybe_number(node, "ior"),
-                     maybe_number(node, "optical_radius"),
-                     node.has("fibres") ? std::optional(integer_of(node, "fibres")) : std::nullopt,
-                     maybe_number(node, "fibre_twist")};
-  } else {
-    material.surface.coated = node["type"].text == "coated";
-    material.surface.color = color_of(node["color"]);
-    if (material.surface.coated) {
-      material.surface.roughness = number_of(node, "roughness");
-      material.surface.ior = number_of(node, "ior");
-    }
-  }
-  return material;
-}
-
 // Finds a material of the wanted sort; without a name, the default of that sort is made once.
 int find_material(Scene& scene, const JsonNode& user, const std::string& path, bool ply) {
   const JsonNode* name = user.find("material");
@@ -208,6 +176,9 @@ FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index) {
   fabric.transform = transform_of(node["transform"]);
   fabric.pattern = pattern_of(node["pattern"]);
   fabric.material = find_material(scene, node, path, true);
+  if (const JsonNode* image = node.find("color_image"))
+    fabric.color_image = {(*image)["file"].text, (*image)["map"].text == "stitches", pair_of((*image)["origin"]),
+                          pair_of((*image)["size"]), (*image)["repeat"].boolean};
   return fabric;
 }
 
@@ -281,6 +252,7 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   // Lengths are converted while the document is checked, so the units are looked up first; a wrong word is found there.
   const JsonNode* units = root.find("units");
   if (units && units->text == "mm") context.metres_per_unit = 1e-3;
+  join_material_files(root, context.folder);
   check_schema(scene_type(), root, context);
 
   Scene scene;

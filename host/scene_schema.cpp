@@ -1,5 +1,6 @@
 #include "host/scene_schema.h"
 
+#include "host/material_schema.h"
 #include "host/scene.h"
 
 namespace wale {
@@ -50,28 +51,6 @@ Type integrator() {
       {"pool", count(0, 1 << 26), "paths in flight; 0 = from the device", "0"},
       {"seed", integer({0, 4294967295.0}), "another seed, another noise", "0"},
   });
-}
-
-Type material() {
-  const auto ply = object({
-      {"preset", word({"cotton", "wool", "silk", "polyester", "acrylic", "mohair"}), "appearance to start from",
-       "wool"},
-      {"color", color(), "fibre colour"},
-      {"reflect", color(), "body colour seen from the lit side; with transmit, instead of color"},
-      {"transmit", color(), "body colour of light that comes through; with reflect, instead of color"},
-      {"roughness", number({0, 90}, Unit::angle), "width of the surface highlight"},
-      {"ior", number({1, 4}), "refractive index of the fibres"},
-      {"optical_radius", number({0, 1e4}), "optical depth of a ply's radius: how dense the fibres are"},
-      {"fibres", count(1, 4096), "in a ply, where they are shown one by one or as maps"},
-      {"fibre_twist", number({-89, 89}, Unit::angle), "angle of the surface fibres to the ply, signed"},
-  });
-  const auto diffuse = object({{"color", color(), "albedo", "[0.5, 0.5, 0.5]"}});
-  const auto coated = object({
-      {"color", color(), "albedo below the coat", "[0.5, 0.5, 0.5]"},
-      {"roughness", number({0, 1}), "of the coat", "0.3"},
-      {"ior", number({1, 4}), "of the coat", "1.5"},
-  });
-  return tagged("type", {{"ply", ply}, {"diffuse", diffuse}, {"coated", coated}});
 }
 
 Type transform() {
@@ -150,6 +129,8 @@ Type fabric() {
           {"flyaways", flyaways, "fibres that stand off the plies", "{}"},
           {"detail", word({"none", "paper", "maps", "fibres"}),
            "of plies: the tube, maps as KNIT21, maps, or explicit fibres", "maps"},
+          {"color_image", color_image_type(),
+           "one colour per stitch from an image; goes before the material's colours"},
       },
       {{{"repeats", "gauge", "uv_metres"}, true}});
 }
@@ -220,7 +201,7 @@ const SchemaType& scene_type() {
       {"camera", camera(), "absent = frames the fabrics"},
       {"film", film(), "the image", "{}"},
       {"integrator", integrator(), "accuracy and effort", "{}"},
-      {"materials", map(material()), "by name", "{}"},
+      {"materials", map(material_type()), "by name", "{}"},
       {"fabrics", list(fabric()), "knitted cloth", "[]"},
       {"objects", list(scene_object()), "everything else that is seen", "[]"},
       {"lights", list(light()), "absent or empty = a constant environment of radiance 1", "[]"},

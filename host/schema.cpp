@@ -18,7 +18,7 @@ std::shared_ptr<SchemaType> make(Kind kind) {
 }  // namespace
 
 bool Range::contains(double x) const {
-  if (!(open ? x > min : x >= min) || !(x <= max)) return false;  // refuses NaN
+  if (!(open ? x > min : x >= min) || !(open_max ? x < max : x <= max)) return false;  // refuses NaN
   return gap == 0 || x == 0 || std::abs(x) >= gap;
 }
 
@@ -26,6 +26,7 @@ std::string Range::text() const {
   if (gap > 0) return fmt::format("0, {:g} to {:g} or {:g} to {:g}", gap, max, min, -gap);
   const bool bounded_below = min > std::numeric_limits<double>::lowest();
   const bool bounded_above = max < std::numeric_limits<double>::max();
+  if (open && open_max) return fmt::format("above {:g}, below {:g}", min, max);
   if (bounded_below && open)
     return bounded_above ? fmt::format("above {:g}, up to {:g}", min, max) : fmt::format("above {:g}", min);
   if (bounded_below) return bounded_above ? fmt::format("{:g} to {:g}", min, max) : fmt::format("{:g} or more", min);

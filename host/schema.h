@@ -12,12 +12,13 @@ namespace wale {
 /// How a number in a file is turned into SI: lengths follow the file's "units", angles are written in degrees.
 enum class Unit { none, length, angle };
 
-/// Valid numbers, in the units of the file: min <= x <= max, or min < x when `open`. With `gap` > 0 also |x| >= gap or
-/// x = 0. The text of an error is made from the same fields.
+/// Valid numbers, in the units of the file: min <= x <= max, or min < x when `open`, or min < x < max when `open_max`
+/// too. With `gap` > 0 also |x| >= gap or x = 0. The text of an error is made from the same fields.
 struct Range {
   double min = std::numeric_limits<double>::lowest(), max = std::numeric_limits<double>::max();
   bool open = false;
   double gap = 0;
+  bool open_max = false;
   bool contains(double x) const;
   std::string text() const;
 };

@@ -17,7 +17,7 @@ void add_range(ordered_json& out, const Range& range) {
     return;
   }
   if (range.min > std::numeric_limits<double>::lowest()) out[range.open ? "exclusiveMinimum" : "minimum"] = range.min;
-  if (range.max < std::numeric_limits<double>::max()) out["maximum"] = range.max;
+  if (range.max < std::numeric_limits<double>::max()) out[range.open_max ? "exclusiveMaximum" : "maximum"] = range.max;
 }
 
 ordered_json number_text(const Range& range, bool whole) {

@@ -113,13 +113,16 @@ void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
       set_args(k, next + 3, pixel_width(camera_));
       next += 4;
     }
+    if (features_.ply_colors) set_args(k, next++, scene_.ply_colors());
     set_args(k, next, aov_.cl(), ply_list_.cl(), queue_counts_.cl(), kHits);
   }
   if (kernels_.contains("shade_fibre")) {
     auto& k = kernel("shade_fibre");
     next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1)));
-    set_args(k, next, scene_.vertices(), scene_.fibre_materials(), aov_.cl(), fibre_list_.cl(), queue_counts_.cl(),
-             kHits + 3);
+    set_args(k, next, scene_.vertices(), scene_.fibre_materials());
+    next += 2;
+    if (features_.ply_colors) set_args(k, next++, scene_.ply_colors());
+    set_args(k, next, aov_.cl(), fibre_list_.cl(), queue_counts_.cl(), kHits + 3);
   }
   if (kernels_.contains("shade_surface")) {
     auto& k = kernel("shade_surface");

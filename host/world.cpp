@@ -9,6 +9,7 @@
 
 #include "geom/error.h"
 #include "host/materials.h"
+#include "host/ply_colors.h"
 
 namespace wale {
 namespace {
@@ -67,21 +68,38 @@ class Builder {
       require_uv(mesh);
       transform_mesh(mesh, fabric.transform);
       const Pattern pattern = load_pattern(fabric.pattern);
+      const PlyAppearance& yarn = scene_.materials.at(size_t(fabric.material)).yarn;
       FabricSpec spec = fabric.spec;
-      spec.fibres = fibre_recipe(scene_.materials.at(size_t(fabric.material)).yarn);
+      spec.fibres = fibre_recipe(yarn);
+      spec.places = colors_need_places(yarn, fabric.color_image);
       refuse_if_too_large(mesh, pattern, spec);
       world_.fabric_mesh_reports.push_back(validate(mesh));
       for (const auto& p : mesh.position) bounds_.add(p), fabric_bounds_.add(p);
       world_.fabrics.push_back(knit_fabric(std::move(mesh), pattern, spec));
       world_.fabric_material.push_back(uint32_t(world_.ply_materials.size()));
-      const PlyAppearance& yarn = scene_.materials.at(size_t(fabric.material)).yarn;
       world_.ply_materials.push_back(ply_material(yarn));
       world_.fibres.add(spec.fibres, world_.fabrics.back().ply_radius, spec.detail);
       const bool fibres = world_.fabrics.back().report.fibres > 0;
       world_.fabric_fibre_material.push_back(fibres ? uint32_t(world_.fibre_materials.size()) : W_NONE);
       if (fibres) world_.fibre_materials.push_back(fibre_material(yarn));
+      color_plies(world_.fabrics.back(), yarn, fabric.color_image);
       if (progress_) progress_("knit", double(world_.fabrics.size()) / double(scene_.fabrics.size()));
     }
+  }
+
+  void color_plies(Fabric& fabric, const PlyAppearance& yarn, const ColorImage& image) {
+    const size_t before = vertices_;
+    vertices_ += fabric.anchors.size();
+    if (!colors_vary(yarn, image)) {
+      if (!world_.ply_colors.empty()) world_.ply_colors.resize(vertices_, 0);
+      return;
+    }
+    const std::vector<uint32_t> words =
+        bake_ply_colors(fabric, yarn, image, image.file.empty() ? Image{} : loaders_.image(image.file));
+    world_.ply_colors.resize(before, 0);  // fabrics before it keep their materials' colours
+    world_.ply_colors.insert(world_.ply_colors.end(), words.begin(), words.end());
+    world_.colored_fabrics.push_back(fabric.name);
+    fabric.place = {};
   }
 
   // A segment takes 28 bytes as stored vertex and about 25 in leaves and nodes on the device, and as much again for
@@ -338,6 +356,7 @@ class Builder {
   const BuildProgress& progress_;
   World world_;
   Bounds bounds_, fabric_bounds_;
+  size_t vertices_ = 0;  ///< of the fabrics so far
   std::vector<Triangle> triangles_;
   std::vector<Sphere> spheres_;
 };

@@ -30,6 +30,8 @@ struct World {
   FibreTables fibres;                           ///< detail maps of every ply material
   std::vector<WFibreMaterial> fibre_materials;  ///< of fabrics with explicit fibres only
   std::vector<uint32_t> fabric_fibre_material;  ///< per fabric, into fibre_materials; W_NONE without explicit fibres
+  std::vector<uint32_t> ply_colors;             ///< per vertex of all fabrics (host/ply_colors.h); empty: none varies
+  std::vector<std::string> colored_fabrics;     ///< whose colours vary
   std::vector<float> triangles;                 ///< W_TRIANGLE_WORDS per triangle, see stages/shade_surface.cl
   std::vector<WSphere> spheres;
   std::vector<WSurfaceMaterial> surface_materials;

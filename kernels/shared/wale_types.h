@@ -59,6 +59,11 @@ typedef int32_t w_int;
 #define W_VERTEX_WORDS 7
 #define W_LENGTH_PERIOD 4096.0f
 
+/* Colour of the segment that starts at a vertex, where colours vary: 10 bits q a channel from the lowest up,
+   c = 1 - (1 - q/1023)^2. Without W_COLOR_GIVEN the material's own colour holds. */
+#define W_COLOR_GIVEN 0x40000000u
+#define W_COLOR_MAX 1023u
+
 /* Marks a leaf whose curves are single fibres. */
 #define W_MATERIAL_FIBRE 0x80000000u
 

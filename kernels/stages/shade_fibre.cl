@@ -2,6 +2,7 @@
    goes on from the fibre's axis, where a far-field function has its one place: a ray from there meets no front face of
    its own tube. */
 #include "appearance/fibre_bsdf.clh"
+#include "appearance/ply_color.clh"
 #include "geometry/ply_surface.clh"
 #include "lights.clh"
 #include "sampling/dimensions.clh"
@@ -12,7 +13,11 @@
 #include "stages/scene_args.clh"
 
 __kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PARAMS, __global const float* vertices,
-                          __global const WFibreMaterial* materials, __global float4* aov, __global const uint* list,
+                          __global const WFibreMaterial* materials,
+#ifdef W_HAS_PLY_COLORS
+                          __global const uint* colors,
+#endif
+                          __global float4* aov, __global const uint* list,
                           __global const uint* counts, uint count_index, uint depth) {
   const uint i = get_global_id(0);
   if (i >= counts[count_index]) return;
@@ -35,7 +40,11 @@ __kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_P
   h.u = hit_uv[slot].x;
   h.v = hit_uv[slot].y;
   const WPlySurface s = w_ply_surface(&scene, vertices, &ray, &h);
-  const WFibreShade shade = w_fibre_setup(materials[s.material & ~W_MATERIAL_FIBRE], s.smooth_t, s.smooth_n, -ray.d);
+  WFibreMaterial material = materials[s.material & ~W_MATERIAL_FIBRE];
+#ifdef W_HAS_PLY_COLORS
+  if (colors[s.segment] & W_COLOR_GIVEN) material.transmit.xyz = w_ply_color(colors[s.segment]);
+#endif
+  const WFibreShade shade = w_fibre_setup(material, s.smooth_t, s.smooth_n, -ray.d);
   const float3 axis = s.u * s.edge;
 
 #ifdef W_AOVS

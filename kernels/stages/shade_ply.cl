@@ -1,6 +1,7 @@
 /* A path meets a ply (KNIT21 section 3.3): connect it to a light, go on along a lobe of the ply BSDF. A direction on the outer side of the surface leaves at the hit; any other one leaves from the middle of the
    chord through the ply (docs/appearance.md), and meets whatever lies ahead, its own segment excepted. */
 #include "appearance/ply_bsdf.clh"
+#include "appearance/ply_color.clh"
 #include "geometry/ply_surface.clh"
 #include "lights.clh"
 #include "sampling/dimensions.clh"
@@ -15,13 +16,21 @@ static inline float3 w_leave(const WPlySurface* s, float3 out, float3 middle, fl
   return dot(w, s->n) > 0.0f ? out : middle;
 }
 
+#ifdef W_HAS_PLY_COLORS
+#define W_COLOR_PARAMS __global const uint *colors,
+#define W_COLORED(material, segment) w_ply_colored(material, colors[segment])
+#else
+#define W_COLOR_PARAMS
+#define W_COLORED(material, segment) material
+#endif
+
 __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PARAMS, __global const float* vertices,
                         __global const WPlyMaterial* materials,
 #ifdef W_HAS_DETAIL
                         __global const WFibreDetail* details, __global const uint* fibre_offsets,
                         __global const float4* fibre_candidates, float2 pixel_width,
 #endif
-                        __global float4* aov, __global const uint* list,
+                        W_COLOR_PARAMS __global float4* aov, __global const uint* list,
                         __global const uint* counts, uint count_index, uint depth) {
   const uint i = get_global_id(0);
   if (i >= counts[count_index]) return;
@@ -48,7 +57,7 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
   h.v = hit_uv[slot].y;
   const WPlySurface s = w_ply_surface(&scene, vertices, &ray, &h);
   const float3 wv = -ray.d;
-  const WPlyMaterial material = materials[s.material];
+  const WPlyMaterial material = W_COLORED(materials[s.material], s.segment);
   WFibreAt fibre = w_fibre_mean(material.tilt);
 #ifdef W_HAS_DETAIL
   // What the camera sees itself; later on the path nothing is sharp enough to tell fibres apart.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geom/error.h"
+#include "host/scattering_keys.h"
 
 namespace wale {
 namespace {
@@ -65,6 +66,107 @@ TEST(Materials, RefusesByName) {
   SurfaceAppearance thin;
   thin.ior = 0.5;
   EXPECT_THROW(surface_material(thin), Error);
+}
+
+template <typename Change>
+std::string refusal(const Change& change) {
+  PlyAppearance a;
+  change(a);
+  try {
+    fibre_recipe(a);
+    fibre_material(a);
+  } catch (const Error& e) {
+    EXPECT_EQ(e.fault(), Fault::user);
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Materials, GlossNarrowsTheHighlight) {
+  for (const std::string& name : ply_presets()) {
+    PlyAppearance a;
+    a.preset = name;
+    const float own = ply_material(a).beta_r;
+    a.gloss = 0.5;
+    EXPECT_FLOAT_EQ(ply_material(a).beta_r, own) << name;
+    float before = 10;
+    for (int i = 0; i <= 20; ++i) {
+      a.gloss = i / 20.0;
+      const float beta = ply_material(a).beta_r;
+      EXPECT_LE(beta, before);
+      EXPECT_GE(beta, 0.5 * M_PI / 180 * 0.99999);
+      EXPECT_LE(beta, 40 * M_PI / 180 * 1.00001);
+      before = beta;
+    }
+    EXPECT_LT(before, own / 5);
+  }
+}
+
+TEST(Materials, TranslucencyThinsThePly) {
+  PlyAppearance a;
+  const WPlyMaterial own = ply_material(a);
+  a.translucency = 0.5;
+  EXPECT_FLOAT_EQ(ply_material(a).tau_e, own.tau_e);
+  EXPECT_FLOAT_EQ(ply_material(a).b, own.b);
+  float tau = 1e9f, b = 1e9f;
+  for (int i = 0; i <= 20; ++i) {
+    a.translucency = i / 20.0;
+    const WPlyMaterial m = ply_material(a);
+    EXPECT_LT(m.tau_e, tau);
+    EXPECT_LT(m.b, b);
+    tau = m.tau_e, b = m.b;
+  }
+}
+
+TEST(Materials, FittedParametersReplaceThePresets) {
+  PlyAppearance a;
+  int i = 0;
+  for (const ScatteringKey& k : kScatteringKeys) a.scattering.*k.given = 0.51 + 0.01 * i++;
+  const WPlyMaterial m = ply_material(a);
+  i = 0;
+  for (const ScatteringKey& k : kScatteringKeys) EXPECT_FLOAT_EQ(m.*k.value, float(0.51 + 0.01 * i++)) << k.key;
+}
+
+TEST(Materials, FibresReplaceThePresets) {
+  PlyAppearance a;
+  a.fibre_twist = 0.3;
+  EXPECT_NEAR(fibre_recipe(a).twist, std::tan(0.3), 1e-6);
+  a.fibres = {40, 0.6, -0.4, 1.5, 0.2, 0.7, 2.5, 9, 0.11, 0.22};
+  const FibreRecipe r = fibre_recipe(a);
+  EXPECT_EQ(r.fibres, 40);
+  EXPECT_EQ(r.packing, 0.6);
+  EXPECT_NEAR(r.twist, std::tan(-0.4), 1e-6) << "its sign is the sense";
+  EXPECT_EQ(r.radial_beta, 1.5);
+  EXPECT_EQ(r.radial_epsilon, 0.2);
+  EXPECT_EQ(r.migration_min, 0.7);
+  EXPECT_EQ(r.migration_rate, 2.5);
+  EXPECT_EQ(r.seed, 9u);
+  EXPECT_FLOAT_EQ(fibre_material(a).beta_tt, 0.11f);
+  EXPECT_FLOAT_EQ(fibre_material(a).gamma_tt, 0.22f);
+}
+
+TEST(Materials, RefusesWhatExcludesEachOther) {
+  const Rgb grey{0.5, 0.5, 0.5};
+  EXPECT_NE(refusal([&](auto& a) { a.color = a.fibre_color = grey; }), "");
+  EXPECT_NE(refusal([&](auto& a) { a.color = a.forward = a.back = grey; }), "");
+  EXPECT_NE(refusal([](auto& a) { a.gloss = a.roughness = 0.5; }), "");
+  EXPECT_NE(refusal([](auto& a) { a.translucency = a.optical_radius = 0.5; }), "");
+  EXPECT_NE(refusal([](auto& a) { a.translucency = a.scattering.optical_radius = 0.5; }), "");
+  EXPECT_NE(refusal([](auto& a) { a.optical_radius = a.scattering.optical_radius = 0.5; }), "");
+  EXPECT_EQ(refusal([](auto& a) { a.translucency = a.gloss = 0.5; }), "");
+}
+
+TEST(Materials, RefusesOutOfRangeWithTheRange) {
+  EXPECT_NE(refusal([](auto& a) { a.fibres.count = 0; }).find("1 to 4096"), std::string::npos);
+  EXPECT_NE(refusal([](auto& a) { a.fibres.packing = 0.71; }).find("up to 0.7"), std::string::npos);
+  EXPECT_NE(refusal([](auto& a) { a.fibres.packing = 0.0; }).find("above 0"), std::string::npos);
+  EXPECT_NE(refusal([](auto& a) { a.fibre_twist = 89.0 * M_PI / 180; }).find("below 1.55"), std::string::npos);
+  EXPECT_NE(refusal([](auto& a) { a.fibres.twist = -1.57; }), "");
+  EXPECT_NE(refusal([](auto& a) { a.gloss = 1.1; }), "");
+  EXPECT_NE(refusal([](auto& a) { a.translucency = -0.1; }), "");
+  EXPECT_NE(refusal([](auto& a) { a.ior = 0.9; }), "");
+  EXPECT_NE(refusal([](auto& a) { a.scattering.variance_edge = 0.0; }), "");
+  EXPECT_NE(refusal([](auto& a) { a.fibre_color = Rgb{0, -0.1, 0}; }), "");
 }
 
 }  // namespace

@@ -134,6 +134,62 @@ TEST(SceneErrors, ColorBesideReflectAndTransmit) {
                   .starts_with("s.json:3:10: materials.m.color: cannot be given together"));
 }
 
+TEST(SceneErrors, ColourTwice) {
+  EXPECT_EQ(refused_ply("\"color\": [1,1,1], \"fibre_color\": [1,1,1]"),
+            "s.json:3:19: materials.m.fibre_color: cannot be given together with \"color\"; choose one of \"color\", "
+            "\"fibre_color\", \"plies\", \"stripes\"");
+}
+
+TEST(SceneErrors, GlossBesideRoughness) {
+  EXPECT_TRUE(refused_ply("\"gloss\": 0.5, \"roughness\": 4")
+                  .starts_with("s.json:3:15: materials.m.roughness: cannot be given together with \"gloss\""));
+}
+
+TEST(SceneErrors, TranslucencyBesideOpticalRadius) {
+  EXPECT_TRUE(refused_ply("\"translucency\": 0.5, \"optical_radius\": 4")
+                  .starts_with("s.json:3:22: materials.m.optical_radius: cannot be given together"));
+  EXPECT_EQ(refused_ply("\"translucency\": 0.5, \"scattering\": {\"optical_radius\": 4}"),
+            "s.json:3:17: materials.m.translucency: cannot be given together with \"scattering.optical_radius\"");
+}
+
+TEST(SceneErrors, FibreColourBesideReflectAndTransmit) {
+  EXPECT_TRUE(refused_ply("\"fibre_color\": [1,1,1], \"reflect\": [1, 1, 1], \"transmit\": [1, 1, 1]")
+                  .starts_with("s.json:3:16: materials.m.fibre_color: cannot be given together"));
+}
+
+TEST(SceneErrors, TwistThatInverts) {
+  EXPECT_EQ(refused_ply("\"fibre_twist\": 89"),
+            "s.json:3:16: materials.m.fibre_twist: 89 is out of range; valid: above -89, below 89");
+  EXPECT_EQ(refused_ply("\"fibres\": {\"twist\": -90}"),
+            "s.json:3:21: materials.m.fibres.twist: -90 is out of range; valid: above -89, below 89");
+}
+
+TEST(SceneErrors, FibresOutOfRange) {
+  EXPECT_EQ(refused_ply("\"fibres\": {\"count\": 0}"),
+            "s.json:3:21: materials.m.fibres.count: 0 is out of range; valid: 1 to 4096");
+  EXPECT_EQ(refused_ply("\"fibres\": {\"packing\": 0.8}"),
+            "s.json:3:23: materials.m.fibres.packing: 0.8 is out of range; valid: above 0, up to 0.7");
+  EXPECT_EQ(refused_ply("\"fibres\": {\"packing\": 0}"),
+            "s.json:3:23: materials.m.fibres.packing: 0 is out of range; valid: above 0, up to 0.7");
+}
+
+TEST(SceneErrors, ScatteringOutOfRange) {
+  EXPECT_EQ(refused_ply("\"scattering\": {\"variance_centre\": 0}"),
+            "s.json:3:35: materials.m.scattering.variance_centre: 0 is out of range; valid: 0.0001 to 100");
+  EXPECT_EQ(refused_ply("\"scattering\": {\"forward_witdh\": 1}"),
+            "s.json:3:16: materials.m.scattering.forward_witdh: unknown key; did you mean \"forward_width\"?");
+}
+
+TEST(SceneErrors, StripeWithoutLength) {
+  EXPECT_EQ(refused_ply("\"stripes\": [{\"color\": \"#ffffff\"}]"),
+            "s.json:3:13: materials.m.stripes.0: the key \"length\" is missing");
+}
+
+TEST(SceneErrors, ColourImageOfNoFile) {
+  EXPECT_TRUE(refused_fabric("\"color_image\": {\"file\": \"none.png\"}")
+                  .starts_with("s.json:4:25: fabrics.0.color_image.file: no file \"none.png\""));
+}
+
 TEST(SceneErrors, MaterialOfUnknownType) {
   EXPECT_EQ(refused_keys("\"materials\": {\"m\": {\"type\": \"difuse\"}}"),
             "s.json:2:29: materials.m.type: \"difuse\" is not known; did you mean \"diffuse\"?");

@@ -69,8 +69,8 @@ TEST(Scene, DefaultsOfTheFormatAreThoseOfTheStructs) {
 
 // What the schema lets through, the materials take.
 TEST(Scene, MaterialsAtTheEndsOfTheirRanges) {
-  for (const char* values : {R"("roughness": 0, "ior": 1, "optical_radius": 0, "fibre_twist": -89)",
-                             R"("roughness": 90, "ior": 4, "optical_radius": 10000, "fibre_twist": 89)"}) {
+  for (const char* values : {R"("roughness": 0, "ior": 1, "optical_radius": 0, "fibre_twist": -88.9)",
+                             R"("roughness": 90, "ior": 4, "optical_radius": 10000, "fibre_twist": 88.9)"}) {
     const Scene scene = scene_of(std::string(R"({"wale": 1, "materials": {"y": {"type": "ply", )") + values + "}}}");
     EXPECT_NO_THROW(ply_material(scene.materials[0].yarn)) << values;
   }

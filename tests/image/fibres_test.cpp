@@ -13,7 +13,7 @@ namespace {
 Scene one_ply_of_twenty(int pixels) {
   Scene scene = empty_scene(0.002, pixels);
   add_fabric(scene, straight_yarn(0.002, 0.0005), 0.006, 0.002, 1, "wool", Rgb{1, 1, 1});
-  scene.materials[0].yarn.fibres = 20;
+  scene.materials[0].yarn.fibres.count = 20;
   scene.fabrics[0].spec.detail = Detail::fibres;
   return scene;
 }
@@ -21,7 +21,7 @@ Scene one_ply_of_twenty(int pixels) {
 Scene swatch(int pixels, Detail detail) {
   Scene scene = empty_scene(0.004, pixels);
   add_fabric(scene, stockinette_pattern(), 0.008, 0.008, 2, "cotton", Rgb{1, 1, 1});
-  scene.materials[0].yarn.fibres = 12;
+  scene.materials[0].yarn.fibres.count = 12;
   scene.fabrics[0].spec.detail = detail;
   scene.fabrics[0].spec.flyaways.hairs = scene.fabrics[0].spec.flyaways.loops = 1000;
   return scene;

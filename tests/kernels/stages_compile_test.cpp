@@ -11,7 +11,7 @@ class StagesCompile : public testing::TestWithParam<const char*> {};
 TEST_P(StagesCompile, InAllVariants) {
   const Device device = Device::open();
   const std::string all =
-      " -DW_HAS_PLIES -DW_HAS_TRIANGLES -DW_HAS_SPHERES -DW_HAS_ENVIRONMENT -DW_HAS_LIGHTS -DW_AOVS";
+      " -DW_HAS_PLIES -DW_HAS_TRIANGLES -DW_HAS_SPHERES -DW_HAS_ENVIRONMENT -DW_HAS_LIGHTS -DW_AOVS -DW_HAS_PLY_COLORS";
   for (const std::string& options :
        {std::string("-DW_LANES=1 -DW_LOCAL_STAGE=0"), "-DW_LANES=8 -DW_LOCAL_STAGE=1" + all,
         "-DW_LANES=16 -DW_LOCAL_STAGE=2" + all, "-DW_LANES=16 -DW_LOCAL_STAGE=0" + all,

@@ -1,0 +1,17 @@
+#pragma once
+#include <filesystem>
+
+#include "host/json_document.h"
+#include "host/scene.h"
+
+namespace wale {
+
+/// Before the schema is checked: where a ply material names a "file", the keys of that file (relative to `folder`) join
+/// the material's own, which go before them, also where they exclude one of the file's. Throws a user error when a
+/// file is no material, or names a file in turn; a file that does not exist is left for the schema to report.
+void join_material_files(JsonNode& scene, const std::filesystem::path& folder);
+
+/// A checked node of the scene's "materials".
+MaterialSpec material_of(const std::string& name, const JsonNode& node);
+
+}  // namespace wale

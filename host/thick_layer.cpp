@@ -1,0 +1,123 @@
+#include "host/thick_layer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geom/error.h"
+
+namespace wale {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kLean = 0.75, kGraze = 3;  // W_BODY_LEAN, W_BODY_GRAZE
+constexpr int kOffsets = 32, kAngles = 24, kTilts = 12, kTurns = 12;
+
+/// Mean of cos th_o under the longitudinal lobe of variance v about th_i, by its exact sampling (d'Eon 2013) at the
+/// midpoints of a grid.
+double mean_cos(double sin_i, double cos_i, double v) {
+  double sum = 0;
+  for (int i = 0; i < kTilts; ++i) {
+    const double u = (i + 0.5) / kTilts;
+    const double q = std::clamp(-v * std::log(1 - u + u * std::exp(-2 / v)), 0.0, 2.0);
+    const double s = std::sqrt(q * (2 - q));
+    for (int j = 0; j < kTurns; ++j) {
+      const double sin_o = -(1 - q) * sin_i + s * std::cos(kPi * (j + 0.5) / kTurns) * cos_i;
+      sum += std::sqrt(std::max(0.0, 1 - sin_o * sin_o));
+    }
+  }
+  return sum / (kTilts * kTurns);
+}
+
+/// Mean of -sin th_o / sin th_i under the same lobe: coth(1/v) - v.
+double mean_sin_factor(double v) { return 1 / std::tanh(1 / v) - v; }
+
+/// Mean cosine of the logistic cut to [-pi, pi].
+double mean_cos_logistic(double s) {
+  constexpr int kSteps = 256;
+  double sum = 0, weights = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double x = kPi * (i + 0.5) / kSteps, e = std::exp(-x / s), w = e / ((1 + e) * (1 + e));
+    sum += w * std::cos(x);
+    weights += w;
+  }
+  return sum / weights;
+}
+
+struct Vector {
+  double x, y, z;
+};
+double dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+}  // namespace
+
+ThickLayer::ThickLayer(const WPlyMaterial& m) {
+  if (m.fibre.w != 0) bug("ThickLayer of a material with body colours");
+  const double back_width = mean_cos_logistic(m.s_b), v_r = double(m.beta_r) * m.beta_r;
+  double total = 0, cosines = 0;
+  for (int i = 0; i < kOffsets; ++i) {
+    const double h = 2 * (i + 0.5) / kOffsets - 1, c = std::sqrt(1 - h * h), k = 2 * h * c;
+    const double v = m.v_e + (double(m.v_c) - m.v_e) * c;
+    const double forward_width = mean_cos_logistic(m.s_f0 * std::pow(c, double(m.e_f)) + 0.05);
+    const double center_f = kPi - m.d_f * k, center_b = std::asin(h) + m.d_b * k;
+    const double length_tf = std::sqrt(1 + double(m.tilt) * m.tilt);
+    const Vector n{c, h, 0}, tf{-m.tilt * h / length_tf, m.tilt * c / length_tf, 1 / length_tf};
+    for (int j = 0; j < kAngles; ++j) {
+      // A random line meets a cylinder at latitude th in proportion to cos^2 th (solid angle times width).
+      const double theta = kPi * ((j + 0.5) / kAngles - 0.5), sin_v = std::sin(theta), cos_v = std::cos(theta);
+      const double weight = (1 - std::exp(-2 * double(m.tau_e) * c)) * cos_v * cos_v;
+      const Vector wv{cos_v, 0, sin_v};
+      const double sin_f = dot(wv, tf), cos_f = std::sqrt(std::max(0.0, 1 - sin_f * sin_f));
+      const double fresnel = m.f0 + (1 - double(m.f0)) * std::pow(1 - cos_f, 5);
+      const double surface = std::clamp(fresnel * m.e_r * (1 + m.e_r_h4 * h * h * h * h), 0.0, 1.0);
+
+      // Cosine between the way in, -wv, and the mean way out, per lobe. In the frame of a lobe's axis wv = (cos, 0,
+      // sin).
+      const double forward = std::exp(-m.b * (1 + kGraze * std::pow(1 - cos_v, 3)) * c);
+      const double theta_b = theta - std::atan(kLean * m.tilt * h), sin_b = std::sin(theta_b);
+      const double cos_b = std::abs(std::cos(theta_b));
+      const double body_cos = mean_cos(sin_b, cos_b, v), body_sin = sin_b * sin_b * mean_sin_factor(v);
+      const double g_f = body_sin - cos_b * body_cos * forward_width * std::cos(center_f);
+      const double g_b = body_sin - cos_b * body_cos * back_width * std::cos(center_b);
+      // The normal's azimuth about the surface fibres, whose frame turns wv into (cos_f, 0, sin_f).
+      const double facing = cos_f > 1e-9 ? std::clamp(dot(n, wv) / cos_f, 0.0, 1.0) : 1;
+      const double g_r = sin_f * sin_f * mean_sin_factor(v_r) - cos_f * mean_cos(sin_f, cos_f, v_r) * facing * kPi / 4;
+      total += weight;
+      cosines += weight * (surface * g_r + (1 - surface) * (forward * g_f + (1 - forward) * g_b));
+      nodes_.push_back({weight, surface, fresnel, std::max(m.n0 + m.n1 * c, 1.0)});
+    }
+  }
+  // A ply without fibres scatters nothing; any g does.
+  g_ = total > 0 ? std::clamp(cosines / total, -0.99, 0.99) : 0;
+  for (Node& node : nodes_) node.weight = total > 0 ? node.weight / total : 1.0 / double(nodes_.size());
+}
+
+double ThickLayer::albedo(double fibre) const {
+  double lost = 0;
+  for (const Node& n : nodes_) {
+    const double absorbed = (1 - n.fresnel) * (1 - fibre), d = 1 + 0.25 * (n.hits - 1) * absorbed;
+    lost += n.weight * (1 - n.surface) * (1 - (1 - absorbed) / (d * d * d * d));
+  }
+  return 1 - lost;
+}
+
+double ThickLayer::seen(double fibre) const {
+  const double a = albedo(fibre), s = std::sqrt(std::max(0.0, (1 - a) / (1 - a * g_)));
+  return (1 - s) * (1 - 0.139 * s) / (1 + 1.17 * s);
+}
+
+double ThickLayer::fibre(double wanted) const {
+  if (wanted >= 1) return 1;
+  if (wanted <= seen(0)) return 0;
+  double low = 0, high = 1;
+  for (int i = 0; i < 52; ++i) {
+    const double middle = 0.5 * (low + high);
+    (seen(middle) < wanted ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+Rgb ThickLayer::fibre(const Rgb& c) const { return {fibre(c[0]), fibre(c[1]), fibre(c[2])}; }
+Rgb ThickLayer::seen(const Rgb& c) const { return {seen(c[0]), seen(c[1]), seen(c[2])}; }
+
+}  // namespace wale
