@@ -21,7 +21,7 @@ constexpr double kSharpest = 0.001;  // radians: a highlight sharper than this w
 constexpr double kGloss = 6, kGlossiest = 0.5 * kDegree, kDullest = 40 * kDegree;
 constexpr double kTranslucentTau = 4, kTranslucentDecay = 3;
 
-// One row per preset: bundles of dielectric fibres measured and fitted by bench/goniometer at normal incidence
+// One row per preset: bundles of dielectric fibres measured and fitted by bench/goniometer from 0 to 60 degrees
 // (docs/appearance.md). Angles in degrees, logistic widths in radians, variances in rad^2, twist = tangent of the
 // surface fibres' angle to the axis.
 struct Preset {
@@ -30,23 +30,23 @@ struct Preset {
   int fibres;
   double packing, beta_tt, gamma_tt;  ///< the bundle itself, and light that goes through one fibre (degrees)
   double density;                     ///< kg/m^3
-  double tau_e, e_r, e_r_h4, b, s_f0, e_f, d_f, s_b, d_b, v_c, v_e, n0, n1;
+  double tau_e, e_r, e_r_h4, b, s_f0, e_f, d_f, s_b, d_b, v_c, v_e, n0, n1, hits_back;
   Rgb color;  ///< transmission of one fibre: undyed yarn
 };
 // clang-format off
 constexpr std::array<Preset, 6> kPresets = {{
     {"cotton",    .0450, 8, .39,  75, .50, 20, 35, 1540,
-     2.98, .348, .37, .791, .697, 1.14, 38.4, 2.54, -39.4, .600, .094, 1.68, 5.86, {.965, .955, .930}},
+     2.98, .348, .37, .529, .866, 3.05, 49.4, 1.87, 32.0, .621, .103, .00, 7.56, 1.06, {.965, .955, .930}},
     {"wool",      .0470, 6, .35,  60, .40, 12, 28, 1310,
-     2.48, .342, .52, .423, .614, 1.12, 22.8, 3.00, -68.8, .235, .035, 1.05, 5.23, {.930, .895, .820}},
+     2.48, .342, .52, .224, .570, 2.84, 33.7, 1.95, -46.9, .236, .030, .79, 5.54, 1.30, {.930, .895, .820}},
     {"silk",      .0500, 3, .09, 120, .50,  8, 20, 1340,
-     3.37, .340, .41, .535, .577, 1.15, 22.6, 3.00, -68.8, .159, .033, 1.48, 8.09, {.970, .950, .900}},
+     3.37, .340, .41, .369, .470, 3.57, 34.6, 2.29, -67.4, .159, .032, 5.06, 3.16, 1.08, {.970, .950, .900}},
     {"polyester", .0550, 4, .16,  72, .50, 10, 22, 1380,
-     2.96, .351, .39, .434, .572, 1.09, 20.0, 3.00, -68.8, .193, .039, 1.27, 6.18, {.960, .960, .960}},
+     2.96, .351, .39, .308, .462, 3.32, 32.2, 2.96, -70.4, .193, .038, 2.63, 4.61, 1.06, {.960, .960, .960}},
     {"acrylic",   .0413, 5, .25,  80, .45, 12, 25, 1170,
-     2.84, .345, .44, .448, .616, 1.16, 23.1, 3.00, -68.8, .271, .046, 1.19, 6.35, {.965, .965, .965}},
+     2.84, .345, .44, .282, .527, 3.18, 35.2, 2.23, -60.2, .270, .047, 1.38, 5.99, 1.20, {.965, .965, .965}},
     {"mohair",    .0465, 4, .20,  36, .25, 10, 24, 1310,
-     1.82, .354, .87, .150, .420,  .75,  9.9, 3.00, -68.8, .110, .021,  .55, 3.38, {.955, .925, .860}},
+     1.81, .354, .87, .112, .256, 3.00, 20.2, 1.84, -91.7, .110, .020, .81, 3.25, 1.52, {.955, .925, .860}},
 }};
 // clang-format on
 
@@ -144,6 +144,7 @@ WPlyMaterial ply_material(const PlyAppearance& appearance) {
   m.v_e = float(preset->v_e);
   m.n0 = float(preset->n0);
   m.n1 = float(preset->n1);
+  m.hits_back = float(preset->hits_back);
   for (const ScatteringKey& k : kScatteringKeys)
     if (const auto& given = appearance.scattering.*k.given) {
       const double unit = k.angle ? kDegree : 1;

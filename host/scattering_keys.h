@@ -18,7 +18,7 @@ struct ScatteringKey {
   const char* doc;
 };
 
-inline constexpr std::array<ScatteringKey, 13> kScatteringKeys = {{
+inline constexpr std::array<ScatteringKey, 14> kScatteringKeys = {{
     {"optical_radius", &Scattering::optical_radius, &WPlyMaterial::tau_e, 0, 1e4, false, "tau_e"},
     {"surface_share", &Scattering::surface_share, &WPlyMaterial::e_r, 0, 100, false, "e_r, factor on Fresnel"},
     {"surface_rim", &Scattering::surface_rim, &WPlyMaterial::e_r_h4, 0, 100, false, "e_r_h4, its growth to the rim"},
@@ -33,6 +33,8 @@ inline constexpr std::array<ScatteringKey, 13> kScatteringKeys = {{
     {"variance_edge", &Scattering::variance_edge, &WPlyMaterial::v_e, 1e-4, 100, false, "v_e, rad^2"},
     {"hits_edge", &Scattering::hits_edge, &WPlyMaterial::n0, 0, 1000, false, "n0, fibre hits at the rim"},
     {"hits_chord", &Scattering::hits_chord, &WPlyMaterial::n1, 0, 1000, false, "n1, more of them in the middle"},
+    {"hits_back", &Scattering::hits_back, &WPlyMaterial::hits_back, 0.1, 10, false,
+     "hits of light that turns back, against all"},
 }};
 
 }  // namespace wale

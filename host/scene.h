@@ -40,7 +40,7 @@ struct Scattering {
   std::optional<double> forward_decay, forward_width, forward_narrowing, forward_deflection;  ///< b, s_f0, e_f, d_f
   std::optional<double> backward_width, backward_deflection;                                  ///< s_b, d_b
   std::optional<double> variance_centre, variance_edge;                                       ///< v_c, v_e, rad^2
-  std::optional<double> hits_edge, hits_chord;                                                ///< n0, n1
+  std::optional<double> hits_edge, hits_chord, hits_back;                                     ///< n0, n1, of lobe B
 };
 
 /// What a ply is made of, where it is not the preset's; see FibreRecipe. Angles in radians.

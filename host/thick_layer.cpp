@@ -10,7 +10,8 @@ namespace wale {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kLean = 0.75, kGraze = 3;  // W_BODY_LEAN, W_BODY_GRAZE
+// W_BODY_LEAN, W_BODY_LEAN_DECAY, W_BODY_GRAZE, W_FORWARD_LEAST and W_FORWARD_SKEW of ply_bsdf.clh.
+constexpr double kLean = 0.75, kLeanDecay = 2.25, kGraze = 3.5, kForwardLeast = 0.25, kForwardSkew = 0.35;
 constexpr int kOffsets = 32, kAngles = 24, kTilts = 12, kTurns = 12;
 
 /// Mean of cos th_o under the longitudinal lobe of variance v about th_i, by its exact sampling (d'Eon 2013) at the
@@ -32,16 +33,31 @@ double mean_cos(double sin_i, double cos_i, double v) {
 /// Mean of -sin th_o / sin th_i under the same lobe: coth(1/v) - v.
 double mean_sin_factor(double v) { return 1 / std::tanh(1 / v) - v; }
 
-/// Mean cosine of the logistic cut to [-pi, pi].
-double mean_cos_logistic(double s) {
-  constexpr int kSteps = 256;
-  double sum = 0, weights = 0;
-  for (int i = 0; i < kSteps; ++i) {
-    const double x = kPi * (i + 0.5) / kSteps, e = std::exp(-x / s), w = e / ((1 + e) * (1 + e));
-    sum += w * std::cos(x);
-    weights += w;
+/// Means of cos x and |sin x| over one side of the logistic cut to [-pi, pi].
+struct LogisticSide {
+  double cosine = 0, sine = 0;
+  explicit LogisticSide(double s) {
+    constexpr int kSteps = 256;
+    double weights = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      const double x = kPi * (i + 0.5) / kSteps, e = std::exp(-x / s), w = e / ((1 + e) * (1 + e));
+      cosine += w * std::cos(x);
+      sine += w * std::sin(x);
+      weights += w;
+    }
+    cosine /= weights;
+    sine /= weights;
   }
-  return sum / weights;
+};
+
+/// Mean cosine of an azimuth drawn about `center`, with logistic sides of scales below and above that meet at one
+/// height.
+double mean_cos_logistic(double center, double below, double above) {
+  const double low = below * std::tanh(kPi / (2 * below)), high = above * std::tanh(kPi / (2 * above));
+  const LogisticSide b(below), a(above);
+  const double cosine = (low * b.cosine + high * a.cosine) / (low + high);
+  const double sine = (high * a.sine - low * b.sine) / (low + high);
+  return cosine * std::cos(center) - sine * std::sin(center);
 }
 
 struct Vector {
@@ -53,13 +69,15 @@ double dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.
 
 ThickLayer::ThickLayer(const WPlyMaterial& m) {
   if (m.fibre.w != 0) bug("ThickLayer of a material with body colours");
-  const double back_width = mean_cos_logistic(m.s_b), v_r = double(m.beta_r) * m.beta_r;
+  const double v_r = double(m.beta_r) * m.beta_r;
   double total = 0, cosines = 0;
   for (int i = 0; i < kOffsets; ++i) {
     const double h = 2 * (i + 0.5) / kOffsets - 1, c = std::sqrt(1 - h * h), k = 2 * h * c;
     const double v = m.v_e + (double(m.v_c) - m.v_e) * c;
-    const double forward_width = mean_cos_logistic(m.s_f0 * std::pow(c, double(m.e_f)) + 0.05);
-    const double center_f = kPi - m.d_f * k, center_b = std::asin(h) + m.d_b * k;
+    const double s_f = m.s_f0 * std::pow(c, double(m.e_f)) + kForwardLeast;
+    const double forward_cos =
+        mean_cos_logistic(kPi - m.d_f * k, s_f * (1 - kForwardSkew * h), s_f * (1 + kForwardSkew * h));
+    const double back_cos = mean_cos_logistic(std::asin(h) + m.d_b * k, m.s_b, m.s_b);
     const double length_tf = std::sqrt(1 + double(m.tilt) * m.tilt);
     const Vector n{c, h, 0}, tf{-m.tilt * h / length_tf, m.tilt * c / length_tf, 1 / length_tf};
     for (int j = 0; j < kAngles; ++j) {
@@ -73,18 +91,20 @@ ThickLayer::ThickLayer(const WPlyMaterial& m) {
 
       // Cosine between the way in, -wv, and the mean way out, per lobe. In the frame of a lobe's axis wv = (cos, 0,
       // sin).
-      const double forward = std::exp(-m.b * (1 + kGraze * std::pow(1 - cos_v, 3)) * c);
+      const double towards = std::clamp(kLeanDecay * m.tilt * h * sin_v, -3.0, 3.0);
+      const double forward = std::exp(-m.b * (1 + kGraze * std::pow(1 - cos_v, 2)) * std::exp(towards) * c);
       const double theta_b = theta - std::atan(kLean * m.tilt * h), sin_b = std::sin(theta_b);
       const double cos_b = std::abs(std::cos(theta_b));
       const double body_cos = mean_cos(sin_b, cos_b, v), body_sin = sin_b * sin_b * mean_sin_factor(v);
-      const double g_f = body_sin - cos_b * body_cos * forward_width * std::cos(center_f);
-      const double g_b = body_sin - cos_b * body_cos * back_width * std::cos(center_b);
+      const double g_f = body_sin - cos_b * body_cos * forward_cos;
+      const double g_b = body_sin - cos_b * body_cos * back_cos;
       // The normal's azimuth about the surface fibres, whose frame turns wv into (cos_f, 0, sin_f).
       const double facing = cos_f > 1e-9 ? std::clamp(dot(n, wv) / cos_f, 0.0, 1.0) : 1;
       const double g_r = sin_f * sin_f * mean_sin_factor(v_r) - cos_f * mean_cos(sin_f, cos_f, v_r) * facing * kPi / 4;
       total += weight;
       cosines += weight * (surface * g_r + (1 - surface) * (forward * g_f + (1 - forward) * g_b));
-      nodes_.push_back({weight, surface, fresnel, std::max(m.n0 + m.n1 * c, 1.0)});
+      const double hits = m.n0 + m.n1 * c;
+      nodes_.push_back({weight, surface, forward, fresnel, std::max(hits, 1.0), std::max(m.hits_back * hits, 1.0)});
     }
   }
   // A ply without fibres scatters nothing; any g does.
@@ -95,8 +115,9 @@ ThickLayer::ThickLayer(const WPlyMaterial& m) {
 double ThickLayer::albedo(double fibre) const {
   double lost = 0;
   for (const Node& n : nodes_) {
-    const double absorbed = (1 - n.fresnel) * (1 - fibre), d = 1 + 0.25 * (n.hits - 1) * absorbed;
-    lost += n.weight * (1 - n.surface) * (1 - (1 - absorbed) / (d * d * d * d));
+    const double absorbed = (1 - n.fresnel) * (1 - fibre);
+    const auto body = [&](double hits) { return (1 - absorbed) * std::pow(1 + 0.25 * (hits - 1) * absorbed, -4); };
+    lost += n.weight * (1 - n.surface) * (1 - n.forward * body(n.hits) - (1 - n.forward) * body(n.hits_back));
   }
   return 1 - lost;
 }

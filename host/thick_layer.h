@@ -30,7 +30,7 @@ class ThickLayer {
 
  private:
   struct Node {
-    double weight, surface, fresnel, hits;
+    double weight, surface, forward, fresnel, hits, hits_back;
   };
   std::vector<Node> nodes_;
   double g_ = 0;

@@ -15,29 +15,32 @@ namespace wale {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
+constexpr std::ptrdiff_t kFitted = 4;      ///< inclinations that the fit sees, of those below
 constexpr uint32_t kOtherSections = 1000;  ///< the residuals are taken on cross-sections that the fit has not seen
 
 void print_parameters(const char* what, const PlyParameters& p) {
   fmt::print(
       "{}: tau_e {:.3f}, e_r {:.3f}, e_r_h4 {:.2f}, b {:.3f}, s_f0 {:.3f}, e_f {:.2f}, d_f {:.1f}, s_b {:.2f}, "
-      "d_b {:.1f}, v_c {:.3f}, v_e {:.3f}, n0 {:.2f}, n1 {:.2f}\n",
+      "d_b {:.1f}, v_c {:.3f}, v_e {:.3f}, n0 {:.2f}, n1 {:.2f}, hits_back {:.2f}\n",
       what, p.tau_e, p.e_r, p.e_r_h4, p.b, p.s_f0, p.e_f, p.d_f / kDegree, p.s_b, p.d_b / kDegree, p.v_c, p.v_e, p.n0,
-      p.n1);
+      p.n1, p.hits_back);
 }
 
 void print_head() {
   fmt::print(
-      "\n| parameters | th | TV worst | mean | h and -h added | noise | TV(th) | forward | T0 | R1 | colour rms | "
-      "1-A at .9 | .95 | .99 |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "\n| th | TV worst | mean | noise | TV(th) | T0 | R1 | returned 1 | .97 | .9 | .7 | .5 absolute | forward 1 | "
+      ".97 | "
+      ".9 | .7 |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
 }
 
-void print_residuals(const char* what, const PlyParameters& p, const Slices& s) {
+void print_residuals(const PlyParameters& p, const Slices& s) {
   const Residuals r = residuals(p, s);
   fmt::print(
-      "| {} | {:.0f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:+.3f} | {:+.4f} | {:+.4f} | {:.3f} | "
-      "{:+.1f} % | {:+.1f} % | {:+.1f} % |\n",
-      what, s.theta / kDegree, r.tv_worst, r.tv_mean, r.tv_folded, r.tv_noise, r.tv_theta, r.forward, r.uncollided,
-      r.surface, r.color_rms, 100 * r.lost[0], 100 * r.lost[1], 100 * r.lost[2]);
+      "| {:.0f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:+.4f} | {:+.4f} | {:+.1f} % | {:+.1f} % | {:+.1f} % | "
+      "{:+.1f} % | {:+.4f} | {:+.1f} % | {:+.1f} % | {:+.1f} % | {:+.1f} % |\n",
+      s.theta / kDegree, r.tv_worst, r.tv_mean, r.tv_noise, r.tv_theta, r.uncollided, r.surface, 100 * r.returned[0],
+      100 * r.returned[1], 100 * r.returned[2], 100 * r.returned[3], r.returned_dark, 100 * r.forward[0],
+      100 * r.forward[1], 100 * r.forward[2], 100 * r.forward[3]);
 }
 
 /// Mean passages of the light that leaves forward and of the light that leaves back.
@@ -100,22 +103,10 @@ void fit_bundle(const Options& options) {
   const auto fresh = measure_slices(other, bundle.fibre, thetas, options.paths, options.seed + kOtherSections);
 
   fmt::print("## {}\n\n", bundle.name);
-  const PlyParameters normal = fit_ply({seen[0]}, given);
-  print_parameters("normal incidence", normal);
+  const PlyParameters fitted = fit_ply({seen.begin(), seen.begin() + kFitted}, given);
+  print_parameters("fitted to 0 to 60 degrees", fitted);
   print_head();
-  for (const Slices& s : fresh) print_residuals("normal incidence", normal, s);
-  PlyParameters extended = given;
-  extended.body_tilt = 0.75;
-  extended.forward_graze = 3;
-  extended.hits_shape = 4;
-  extended = fit_ply({seen[0]}, extended);
-  for (const Slices& s : fresh) print_residuals("normal incidence, tilted body", extended, s);
-  if (options.refit) {
-    for (size_t i = 1; i < thetas.size(); ++i) print_residuals("refitted there", fit_ply({seen[i]}, given), fresh[i]);
-    const PlyParameters joint = fit_ply(seen, given);
-    for (const Slices& s : fresh) print_residuals("fitted to all", joint, s);
-  }
-  print_parameters("\ntilted body (body_tilt .75, forward_graze 3, hits_shape 4), normal incidence", extended);
+  for (const Slices& s : fresh) print_residuals(fitted, s);
   fmt::print("\nPassages through fibres, light leaving forward and back:");
   for (const Slices& s : fresh) {
     const auto [forward, back] = hits_by_side(s.whole);
@@ -125,8 +116,8 @@ void fit_bundle(const Options& options) {
   if (options.output.empty()) return;
   std::filesystem::create_directories(options.output);
   const std::string stem = options.output + "/" + bundle.name;
-  write_material(stem + ".json", bundle, normal);
-  write_comparison(stem + "_compared.json", bundle.name, normal, fresh);
+  write_material(stem + ".json", bundle, fitted);
+  write_comparison(stem + "_compared.json", bundle.name, fitted, fresh);
 }
 
 }  // namespace wale

@@ -11,7 +11,6 @@ struct Options {
   uint64_t seed = 1;
   std::string bundle;  ///< preset or file
   std::string output;  ///< folder, empty: nothing is written
-  bool refit = false;  ///< also fit at every inclination, and to all of them together
 };
 
 /// `goniometer table`: published bundles, measured again.

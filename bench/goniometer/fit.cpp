@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <nlopt.hpp>
 #include <numbers>
 
@@ -59,36 +60,6 @@ void fit_surface(const std::vector<Slices>& all, PlyParameters& p) {
   p.e_r = x[0], p.e_r_h4 = x[1];
 }
 
-void fit_azimuth(const std::vector<Slices>& all, PlyParameters& p) {
-  constexpr double kWidest = 3;  // a logistic of this scale is uniform within 10 %
-  const auto with = [&](const std::vector<double>& x) {
-    PlyParameters q = p;
-    q.b = x[0], q.s_f0 = x[1], q.e_f = x[2], q.d_f = x[3], q.s_b = x[4], q.d_b = x[5];
-    return q;
-  };
-  // Mean square of the total variation, so that no offset is left far behind.
-  const auto cost = [&](const std::vector<double>& x) {
-    const PlyParameters q = with(x);
-    double sum = 0;
-    each(all, [&](double theta, const Slices::Slice& s) {
-      const double tv = total_variation(ply_azimuth(q, theta, s.h), s.at.phi);
-      sum += tv * tv * tv * tv;
-    });
-    return std::sqrt(sum);
-  };
-  double least = 1e9;
-  PlyParameters best = p;
-  for (const double b : {0.5, 1.5})  // several starts: the cost has side valleys
-    for (const double s_b : {0.8, 2.5})
-      for (const double d_b : {-0.7, 0.5}) {
-        auto x =
-            minimise(cost, {b, 0.5, 0.9, 0.5, s_b, d_b}, {0, 0.05, 0, -1.2, 0.2, -1.2}, {6, 2, 2.5, 1.4, kWidest, 1.2});
-        x = minimise(cost, x, {0, 0.05, 0, -1.2, 0.2, -1.2}, {6, 2, 2.5, 1.4, kWidest, 1.2});
-        if (cost(x) < least) least = cost(x), best = with(x);
-      }
-  p = best;
-}
-
 void fit_inclination(const std::vector<Slices>& all, PlyParameters& p) {
   const auto cost = [&](const std::vector<double>& x) {
     PlyParameters q = p;
@@ -104,36 +75,74 @@ void fit_inclination(const std::vector<Slices>& all, PlyParameters& p) {
   p.v_c = x[0], p.v_e = x[1];
 }
 
-/// By the light that bright fibres lose, relative: paths meet dozens of plies, so 1 - albedo near white decides how
-/// deep a cloth's colour is.
-void fit_hits(const std::vector<Slices>& all, PlyParameters& p) {
-  const auto cost = [&](const std::vector<double>& x) {
+/// Azimuths, returned light and its colour together: a lobe's width decides how much of it comes back.
+void fit_body(const std::vector<Slices>& all, PlyParameters& p) {
+  static constexpr std::array<double, 4> kColors = {1, .97, .9, .7};
+  struct At {
+    double theta, h, weight;
+    const Measurement* measured;
+    std::unique_ptr<BodyTurn> turn;
+    std::array<SidedLight, kColors.size()> light;
+  };
+  constexpr double kOblique = 50 * std::numbers::pi / 180;
+  std::vector<At> at;
+  each(all, [&](double theta, const Slices::Slice& s) {
+    at.push_back({theta, s.h, s.weight, &s.at, std::make_unique<BodyTurn>(p, theta, s.h), {}});
+    for (size_t c = 0; c < kColors.size(); ++c) at.back().light[c] = sided_light(s.at, kColors[c]);
+  });
+  const auto with = [&](const std::vector<double>& x) {
     PlyParameters q = p;
-    q.n0 = x[0], q.n1 = x[1];
+    q.b = x[0], q.s_f0 = x[1], q.e_f = x[2], q.d_f = x[3], q.s_b = x[4], q.d_b = x[5];
+    q.n0 = x[6], q.n1 = x[7], q.hits_back = x[8];
+    return q;
+  };
+  const auto cost = [&](const std::vector<double>& x) {
+    const PlyParameters q = with(x);
     double sum = 0;
-    each(all, [&](double theta, const Slices::Slice& s) {
-      for (const double c : {.9, .95, .99}) {
-        const double e = (1 - ply_body_albedo(q, theta, s.h, c)) / (1 - body_albedo(s.at, c)) - 1;
-        sum += s.weight * s.at.body[0].mean * e * e;
+    // Slices follow each other by inclination: sums over the ply end where the next one starts.
+    std::array<SidedLight, kColors.size()> ours{}, theirs{};
+    for (size_t i = 0; i < at.size(); ++i) {
+      const At& a = at[i];
+      const BodyHistograms body = ply_body(q, a.theta, a.h, *a.turn);
+      const double tv_weight = a.theta > 0 ? .36 : 1;
+      for (size_t k = 0; k < kAngleBins; ++k) {
+        const double e = 6 * (body.phi[k] - a.measured->phi[k]);
+        sum += tv_weight * e * e;
       }
-    });
+      for (size_t c = 0; c < kColors.size(); ++c) {
+        const SidedLight model = ply_light(q, a.theta, a.h, kColors[c], body);
+        const SidedLight light = a.light[c];
+        ours[c].returned += a.weight * model.returned, ours[c].forward += a.weight * model.forward;
+        theirs[c].returned += a.weight * light.returned, theirs[c].forward += a.weight * light.forward;
+        const double e = (model.returned - light.returned) / (light.returned + .05);
+        if (c == 0) sum += .25 * a.weight * e * e;
+      }
+      if (i + 1 < at.size() && at[i + 1].theta == a.theta) continue;
+      const double w = a.theta > kOblique ? 6 : (a.theta > 0 ? 16 : 36);
+      for (size_t c = 0; c < kColors.size(); ++c) {
+        const double e = ours[c].returned / theirs[c].returned - 1, f = ours[c].forward / theirs[c].forward - 1;
+        sum += w * (e * e + f * f);
+      }
+      ours = theirs = {};
+    }
     return sum;
   };
-  const auto x = minimise(cost, {2, 5}, {0, 0}, {100, 200});
-  p.n0 = x[0], p.n1 = x[1];
+  const std::vector<double> low = {0, 0.05, 0, -1.2, 0.2, -1.6, 0, 0, 0.8};
+  const std::vector<double> high = {8, 2, 5, 1.6, 3, 1.6, 100, 200, 3};  // at scale 3 a lobe is uniform within 10 %
+  auto x = minimise(cost, {0.3, 0.5, 2.8, 0.6, 2, -0.8, 1.5, 5, 1.15}, low, high);
+  p = with(minimise(cost, x, low, high));
 }
 
 }  // namespace
 
 PlyParameters fit_ply(const std::vector<Slices>& slices, const PlyParameters& given) {
   PlyParameters p = given;
-  p.tau_e = fit_uncollided(slices);
-  fit_surface(slices, p);
-  p.body_tilt = 0;  // moves azimuths at normal incidence by less than .003, and costs a hundred times the time
-  fit_azimuth(slices, p);
-  p.body_tilt = given.body_tilt;
+  const std::vector<Slices> normal(slices.begin(), slices.begin() + 1);  // T0 and R1 are the ply's at normal incidence
+  p.tau_e = fit_uncollided(normal);
+  fit_surface(normal, p);
   fit_inclination(slices, p);
-  fit_hits(slices, p);
+  fit_body(slices, p);
+  fit_inclination(slices, p);
   return p;
 }
 

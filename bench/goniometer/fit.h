@@ -23,21 +23,23 @@ struct Slices {
 std::vector<Slices> measure_slices(const FibreRecipe& recipe, const FibreScattering& fibre,
                                    const std::vector<double>& thetas, int64_t paths, uint64_t seed);
 
-/// What the parameters leave. TV: total variation.
+/// Fibre colours that residuals are given for.
+constexpr std::array<double, 5> kResidualColors = {1, .97, .9, .7, .5};
+
+/// What the parameters leave. TV: total variation. Light: over the whole ply, by the slices.
 struct Residuals {
   double tv_worst = 0, tv_mean = 0;  ///< azimuth of the body's light, over the offsets and their signs
-  double tv_folded = 0;              ///< worst when h and -h are added up
   double tv_noise = 0;               ///< what noise alone would leave, worst
   double tv_theta = 0;               ///< inclination, worst
-  double forward = 0;                ///< error of the body's forward share, mean over the ply
+  std::array<double, 5> returned{};  ///< relative error of the light that leaves with cos phi > 0, kResidualColors
+  std::array<double, 5> forward{};   ///< of the light that leaves with cos phi < 0, without the uncollided
+  double returned_dark = 0;          ///< absolute error of the returned light at colour .5
   double uncollided = 0;             ///< error of T0, mean over the ply
   double surface = 0;                ///< error of R1, mean over the ply
-  double color_rms = 0;              ///< error of the body's albedo for fibre colours .5 .7 .85 .95 .99
-  std::array<double, 3> lost{};      ///< relative error of 1 - albedo, mean over the ply, colours .9 .95 .99
 };
 Residuals residuals(const PlyParameters& p, const Slices& s);
 
-/// Parameters that fit all the slices together. Kept as given: f0, twist and what the renderer's model does not have.
+/// Parameters that fit all the slices together. Kept as given: f0 and twist.
 PlyParameters fit_ply(const std::vector<Slices>& slices, const PlyParameters& given);
 
 }  // namespace wale

@@ -21,7 +21,6 @@ int main(int argc, char** argv) {
   common(fit);
   fit->add_option("bundle", options.bundle, "a ply preset, or a JSON file of a ply material with fibres")->required();
   fit->add_option("-o,--output", options.output, "folder for the material and the comparison");
-  fit->add_flag("--refit", options.refit, "also fit at 30, 45, 60 and 75 degrees, and to all together");
   CLI11_PARSE(app, argc, argv);
   try {
     if (*table) wale::print_table(options);

@@ -199,4 +199,14 @@ double body_albedo(const Measurement& white, double c) {
   return sum;
 }
 
+SidedLight sided_light(const Measurement& white, double c) {
+  double back = 0, forward = 0, power = 1;
+  for (size_t i = 0; i < kHitBins; ++i, power *= c)
+    back += white.hits_back[i] * power, forward += white.hits_forward[i] * power;
+  double surface_back = 0;  // its bins' borders include the quarter turns
+  for (int i = kAngleBins / 4; i < kAngleBins * 3 / 4; ++i) surface_back += white.surface_phi[size_t(i)];
+  const double body = white.body[0].mean, surface = white.surface[0].mean;
+  return {body * back + surface * surface_back, body * forward + surface * (1 - surface_back)};
+}
+
 }  // namespace wale

@@ -55,4 +55,11 @@ std::vector<Measurement> measure(const FibreRecipe& recipe, const FibreScatterin
 /// the colour, so it is the mean of c to the number of passages.
 double body_albedo(const Measurement& white, double c);
 
+/// Light that leaves with cos phi > 0 and < 0 for fibres of transmission colour c (grey), from a white measurement;
+/// shares of the light sent, without the uncollided.
+struct SidedLight {
+  double returned, forward;
+};
+SidedLight sided_light(const Measurement& white, double c);
+
 }  // namespace wale

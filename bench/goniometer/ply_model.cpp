@@ -10,35 +10,31 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Distribution function of the logistic of scale s cut to [-pi, pi].
-double trimmed_logistic_cdf(double x, double s) {
-  const auto cdf = [&](double y) { return 0.5 * (1 + std::tanh(y / (2 * s))); };
-  return (cdf(x) - cdf(-kPi)) / (cdf(kPi) - cdf(-kPi));
-}
+// The kernel's W_BODY_* and W_FORWARD_*.
+constexpr double kLean = 0.75, kLeanDecay = 2.25, kGraze = 3.5, kForwardLeast = 0.25, kForwardSkew = 0.35;
 
-/// Mass between angles a < b, any turn, of a lobe about `center`.
-double lobe_mass(double a, double b, double center, double s) {
-  const auto unrolled = [&](double x) {
-    const double turn = std::floor((x - center + kPi) / (2 * kPi));
-    return turn + trimmed_logistic_cdf(x - center - 2 * kPi * turn, s);
-  };
-  return unrolled(b) - unrolled(a);
-}
+double chord(double h) { return std::sqrt(std::max(0.0, 1 - h * h)); }
 
-struct Lobes {
-  double forward, center_f, s_f, center_b, s_b;
+/// A lobe about `center`: logistics of scale `below` before it and `above` behind it, cut at a half turn.
+class Lobe {
+ public:
+  Lobe(double center, double below, double above)
+      : center_(center),
+        below_(below),
+        above_(above),
+        mass_below_(below * std::tanh(kPi / (2 * below))),
+        mass_above_(above * std::tanh(kPi / (2 * above))) {}
+
+  /// Its mass from any fixed angle to x.
+  double until(double x) const {
+    const double turn = std::floor((x - center_ + kPi) / (2 * kPi)), y = x - center_ - 2 * kPi * turn;
+    const double s = y < 0 ? below_ : above_;
+    return turn + (mass_below_ + s * std::tanh(y / (2 * s))) / (mass_below_ + mass_above_);
+  }
+
+ private:
+  double center_, below_, above_, mass_below_, mass_above_;
 };
-
-Lobes lobes(const PlyParameters& p, double theta, double h) {
-  const double b = p.b * (1 + p.forward_graze * std::pow(1 - std::cos(theta), 3));
-  const double c = std::sqrt(std::max(0.0, 1 - h * h)), k = 2 * h * c;
-  return {std::exp(-b * c), kPi - p.d_f * k, p.s_f0 * std::pow(std::max(c, 1e-9), p.e_f) + 0.05,
-          std::asin(h) + p.d_b * k, p.s_b};
-}
-
-double body_mass(const Lobes& l, double a, double b) {
-  return l.forward * lobe_mass(a, b, l.center_f, l.s_f) + (1 - l.forward) * lobe_mass(a, b, l.center_b, l.s_b);
-}
 
 }  // namespace
 
@@ -46,7 +42,7 @@ PlyParameters ply_parameters(const WPlyMaterial& m) {
   PlyParameters p;
   p.tau_e = m.tau_e, p.e_r = m.e_r, p.e_r_h4 = m.e_r_h4;
   p.b = m.b, p.s_f0 = m.s_f0, p.e_f = m.e_f, p.d_f = m.d_f, p.s_b = m.s_b, p.d_b = m.d_b;
-  p.v_c = m.v_c, p.v_e = m.v_e, p.n0 = m.n0, p.n1 = m.n1;
+  p.v_c = m.v_c, p.v_e = m.v_e, p.n0 = m.n0, p.n1 = m.n1, p.hits_back = m.hits_back;
   p.f0 = m.f0, p.twist = m.tilt;
   return p;
 }
@@ -78,52 +74,95 @@ double ply_surface_share(const PlyParameters& p, double theta, double h) {
   return std::clamp(ply_fresnel(p, theta, h) * p.e_r * (1 + p.e_r_h4 * std::pow(h, 4)), 0.0, 1.0);
 }
 
-AngleHistogram ply_azimuth(const PlyParameters& p, double theta, double h) {
-  if (p.body_tilt != 0) return ply_body(p, theta, h).phi;
-  const Lobes l = lobes(p, theta, h);
-  AngleHistogram out;
-  for (int i = 0; i < kAngleBins; ++i)
-    out[size_t(i)] = body_mass(l, -kPi + 2 * kPi * i / kAngleBins, -kPi + 2 * kPi * (i + 1) / kAngleBins);
+LobeAzimuths ply_lobe_azimuths(const PlyParameters& p, double h) {
+  const double c = chord(h), k = 2 * h * c, s_f = p.s_f0 * std::pow(std::max(c, 1e-9), p.e_f) + kForwardLeast;
+  const Lobe f(kPi - p.d_f * k, s_f * (1 - kForwardSkew * h), s_f * (1 + kForwardSkew * h));
+  const Lobe b(std::asin(h) + p.d_b * k, p.s_b, p.s_b);
+  LobeAzimuths out;
+  double f_before = f.until(-kPi), b_before = b.until(-kPi);
+  for (int i = 0; i < kFineBins; ++i) {
+    const double x = -kPi + 2 * kPi * (i + 1) / kFineBins, f_until = f.until(x), b_until = b.until(x);
+    out.forward[size_t(i)] = f_until - f_before;
+    out.back[size_t(i)] = b_until - b_before;
+    f_before = f_until, b_before = b_until;
+  }
   return out;
 }
 
-BodyHistograms ply_body(const PlyParameters& p, double theta, double h) {
-  const double c = std::sqrt(std::max(0.0, 1 - h * h)), v = p.v_e + (p.v_c - p.v_e) * c;
+double ply_forward_weight(const PlyParameters& p, double theta, double h) {
+  const double graze = 1 - std::cos(theta);
+  const double towards = std::clamp(kLeanDecay * p.twist * h * std::sin(theta), -3.0, 3.0);
+  return std::exp(-p.b * (1 + kGraze * graze * graze) * std::exp(towards) * chord(h));
+}
+
+BodyTurn::BodyTurn(const PlyParameters& p, double theta, double h) {
+  const double v = p.v_e + (p.v_c - p.v_e) * chord(h);
   // The body's axis lies in the plane of t and the light: tilted by `lean` towards the light where positive.
-  const double lean = -std::atan(p.body_tilt * p.twist * h), theta_b = theta + lean;
-  const Lobes l = lobes(p, theta, h);
-  const int across = p.body_tilt != 0 ? 144 : kAngleBins, along = p.body_tilt != 0 ? 144 : 8 * kAngleBins;
-  std::vector<double> m(size_t(along), 0.0);
+  const double lean = -std::atan(kLean * p.twist * h), theta_b = theta + lean;
+  constexpr int kAlong = 144;
+  std::array<double, kAlong> m{};
   double sum = 0;
-  for (int j = 0; j < along; ++j) {
-    const double angle = -kPi / 2 + kPi * (j + 0.5) / along;
+  for (int j = 0; j < kAlong; ++j) {
+    const double angle = -kPi / 2 + kPi * (j + 0.5) / kAlong;
     m[size_t(j)] =
         std::cos(angle) * longitudinal_density(Longitudinal::d_eon, std::sin(theta_b), std::sin(angle), std::sqrt(v));
     sum += m[size_t(j)];
   }
-  BodyHistograms out;
-  for (int i = 0; i < across; ++i) {
-    const double low = -kPi + 2 * kPi * i / across, step = 2 * kPi / across, phi_b = low + 0.5 * step;
-    const double mass = body_mass(l, low, low + step) / sum;
-    for (int j = 0; j < along; ++j) {
-      const double angle = -kPi / 2 + kPi * (j + 0.5) / along, w = mass * m[size_t(j)];
-      // From the body's frame to the axis': a turn in the plane of t and the light.
+  for (int i = 0; i < kFineBins; ++i) {
+    const double phi_b = -kPi + 2 * kPi * (i + 0.5) / kFineBins;
+    for (int j = 0; j < kAlong; ++j) {
+      const double angle = -kPi / 2 + kPi * (j + 0.5) / kAlong, w = m[size_t(j)] / sum;
       const double s = std::sin(angle), x = std::cos(angle) * std::cos(phi_b), y = std::cos(angle) * std::sin(phi_b);
       const double xt = x * std::cos(lean) + s * std::sin(lean), st = s * std::cos(lean) - x * std::sin(lean);
-      const double phi = p.body_tilt != 0 ? std::atan2(y, xt) : phi_b;
-      out.phi[size_t(std::clamp(int((phi + kPi) / (2 * kPi) * kAngleBins), 0, kAngleBins - 1))] += w;
-      out.theta[size_t(std::clamp(int((std::asin(std::clamp(st, -1.0, 1.0)) + kPi / 2) / kPi * kAngleBins), 0,
-                                  kAngleBins - 1))] += w;
-      out.forward += xt < 0 ? w : 0;
+      const auto bin = [](double share) { return size_t(std::clamp(int(share * kAngleBins), 0, kAngleBins - 1)); };
+      phi[size_t(i)][bin((std::atan2(y, xt) + kPi) / (2 * kPi))] += w;
+      inclination[size_t(i)][bin((std::asin(std::clamp(st, -1.0, 1.0)) + kPi / 2) / kPi)] += w;
+      back[size_t(i)] += xt > 0 ? w : 0;
     }
   }
+}
+
+BodyHistograms ply_body(const PlyParameters& p, double theta, double h) {
+  return ply_body(p, theta, h, BodyTurn(p, theta, h));
+}
+
+BodyHistograms ply_body(const PlyParameters& p, double theta, double h, const BodyTurn& turn) {
+  const LobeAzimuths lobes = ply_lobe_azimuths(p, h);
+  const double forward = ply_forward_weight(p, theta, h);
+  BodyHistograms out;
+  for (size_t i = 0; i < kFineBins; ++i) {
+    const double mass = forward * lobes.forward[i] + (1 - forward) * lobes.back[i];
+    out.back_of_f += lobes.forward[i] * turn.back[i];
+    out.back_of_b += lobes.back[i] * turn.back[i];
+    for (size_t k = 0; k < kAngleBins; ++k) {
+      out.phi[k] += mass * turn.phi[i][k];
+      out.theta[k] += mass * turn.inclination[i][k];
+    }
+  }
+  out.forward = 1 - forward * out.back_of_f - (1 - forward) * out.back_of_b;
   return out;
 }
 
+BodyAlbedo ply_lobe_albedo(const PlyParameters& p, double theta, double h, double c) {
+  const double f = ply_fresnel(p, theta, h), omega = f + (1 - f) * c, hits = p.n0 + p.n1 * chord(h);
+  const auto albedo = [&](double n) { return omega * std::pow(1 + (std::max(1.0, n) - 1) * (1 - omega) / 4, -4.0); };
+  return {albedo(hits), albedo(p.hits_back * hits)};
+}
+
 double ply_body_albedo(const PlyParameters& p, double theta, double h, double c) {
-  const double f = ply_fresnel(p, theta, h), omega = f + (1 - f) * c;
-  const double nbar = std::max(1.0, p.n0 + p.n1 * std::sqrt(std::max(0.0, 1 - h * h)));
-  return omega * std::pow(1 + (nbar - 1) * (1 - omega) / p.hits_shape, -p.hits_shape);
+  const double forward = ply_forward_weight(p, theta, h);
+  const BodyAlbedo albedo = ply_lobe_albedo(p, theta, h, c);
+  return forward * albedo.forward + (1 - forward) * albedo.back;
+}
+
+SidedLight ply_light(const PlyParameters& p, double theta, double h, double c, const BodyHistograms& body) {
+  const double forward = ply_forward_weight(p, theta, h), collided = 1 - ply_uncollided(p, h);
+  const double surface = ply_surface_share(p, theta, h);
+  const BodyAlbedo albedo = ply_lobe_albedo(p, theta, h, c);
+  const double f = (1 - surface) * forward * albedo.forward, b = (1 - surface) * (1 - forward) * albedo.back;
+  // Half of R's cosine lobe about the normal and what of the other half is on the light's side.
+  const double returned = surface * 0.5 * (1 + chord(h)) + f * body.back_of_f + b * body.back_of_b;
+  return {collided * returned, collided * (surface + f + b - returned)};
 }
 
 AngleHistogram ply_surface_azimuth(double h) {

@@ -11,13 +11,8 @@ struct PlyParameters {
   double tau_e = 3, e_r = 0.32, e_r_h4 = 0.6;
   double b = 1, s_f0 = 0.5, e_f = 1, d_f = 0.5, s_b = 3, d_b = 0;
   double v_c = 0.15, v_e = 0.05;
-  double n0 = 2, n1 = 5;
+  double n0 = 2, n1 = 5, hits_back = 1;
   double f0 = 0.046, twist = 0;
-
-  // Not in the renderer's model, which these defaults are.
-  double body_tilt = 0;      ///< body lobes about t - body_tilt twist h x: 1 = the mean fibre along the chord
-  double forward_graze = 0;  ///< b grows by 1 + forward_graze (1 - cos th)^3
-  double hits_shape = 2;     ///< of the colour law, which is omega (1 + (nbar - 1)(1 - omega)/shape)^-shape
 };
 
 /// What the renderer's material says.
@@ -35,15 +30,42 @@ double ply_fresnel(const PlyParameters& p, double theta, double h);
 /// Share of the collided light that the surface reflects.
 double ply_surface_share(const PlyParameters& p, double theta, double h);
 
+constexpr int kFineBins = 144;  ///< of azimuth about the body's axis
+
+/// Masses of lobes F and B in azimuth about the body's axis.
+struct LobeAzimuths {
+  std::array<double, kFineBins> forward, back;
+};
+LobeAzimuths ply_lobe_azimuths(const PlyParameters& p, double h);
+
+/// Where light of each azimuth about the body's axis goes, seen from the ply's: depends on twist, v_c and v_e alone.
+struct BodyTurn {
+  BodyTurn(const PlyParameters& p, double theta, double h);
+  std::array<AngleHistogram, kFineBins> phi{}, inclination{};
+  std::array<double, kFineBins> back{};  ///< share with cos phi > 0
+};
+
 /// Directions of the body's light, F and B together, in the measurement's bins; each sums to 1.
 struct BodyHistograms {
   AngleHistogram phi{}, theta{};
-  double forward = 0;  ///< share with cos phi < 0
+  double forward = 0;                   ///< share with cos phi < 0
+  double back_of_f = 0, back_of_b = 0;  ///< share of each lobe with cos phi > 0
 };
 BodyHistograms ply_body(const PlyParameters& p, double theta, double h);
-AngleHistogram ply_azimuth(const PlyParameters& p, double theta, double h);
+BodyHistograms ply_body(const PlyParameters& p, double theta, double h, const BodyTurn& turn);
 
-/// Albedo of the body for fibres of transmission colour c.
+/// Lobe F's weight in white light.
+double ply_forward_weight(const PlyParameters& p, double theta, double h);
+
+/// Light that leaves with cos phi > 0 and < 0, as shares of the light sent; uncollided light is in neither.
+SidedLight ply_light(const PlyParameters& p, double theta, double h, double c, const BodyHistograms& body);
+
+/// Albedo of the body for fibres of transmission colour c, lobes F and B.
+struct BodyAlbedo {
+  double forward, back;
+};
+BodyAlbedo ply_lobe_albedo(const PlyParameters& p, double theta, double h, double c);
+/// Of both together.
 double ply_body_albedo(const PlyParameters& p, double theta, double h, double c);
 
 /// Azimuths of surface light about the axis for the cosine lobe about the normal, in the measurement's bins; sum 1.

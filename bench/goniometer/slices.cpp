@@ -39,12 +39,9 @@ std::vector<Slices> measure_slices(const FibreRecipe& recipe, const FibreScatter
 }
 
 Residuals residuals(const PlyParameters& p, const Slices& s) {
-  constexpr std::array<double, 5> kColors = {.5, .7, .85, .95, .99};
-  constexpr std::array<double, 3> kBright = {.9, .95, .99};
+  constexpr size_t kColors = kResidualColors.size();
   Residuals r;
-  double forward_model = 0, forward = 0, body = 0, surface = 0, square = 0;
-  std::array<double, 3> lost{}, lost_model{};
-  AngleHistogram phi_before{};
+  std::array<SidedLight, kColors> ours{}, theirs{};
   for (const Slices::Slice& slice : s.slices) {
     const Measurement& m = slice.at;
     const BodyHistograms model = ply_body(p, s.theta, slice.h);
@@ -53,36 +50,21 @@ Residuals residuals(const PlyParameters& p, const Slices& s) {
     r.tv_mean += slice.weight * tv;
     r.tv_noise = std::max(r.tv_noise, total_variation_of_noise(m.phi, double(m.paths) * m.body[0].mean));
     r.tv_theta = std::max(r.tv_theta, total_variation(model.theta, m.theta));
-    AngleHistogram error = slice.h > 0 ? AngleHistogram{} : phi_before;
-    const AngleHistogram theirs = slice.h > 0 ? m.phi : mirrored(m.phi);
-    const AngleHistogram ours = slice.h > 0 ? model.phi : mirrored(model.phi);
-    double folded = 0;
-    for (size_t i = 0; i < kAngleBins; ++i) folded += 0.25 * std::abs(error[i] += ours[i] - theirs[i]);
-    if (slice.h > 0)
-      phi_before = error;
-    else
-      r.tv_folded = std::max(r.tv_folded, folded);
-
-    const double w = slice.weight * m.body[0].mean;
-    body += w;
-    forward += w * m.forward;
-    forward_model += w * model.forward;
-    surface +=
+    r.surface +=
         slice.weight * (1 - m.uncollided.mean) * (ply_surface_share(p, s.theta, slice.h) - slice.surface_share());
-    for (const double c : kColors) {
-      const double difference = ply_body_albedo(p, s.theta, slice.h, c) - body_albedo(m, c);
-      square += slice.weight * difference * difference / double(kColors.size());
-    }
-    for (size_t k = 0; k < kBright.size(); ++k) {
-      lost[k] += w * (1 - body_albedo(m, kBright[k]));
-      lost_model[k] += w * (1 - ply_body_albedo(p, s.theta, slice.h, kBright[k]));
+    for (size_t k = 0; k < kColors; ++k) {
+      const SidedLight a = ply_light(p, s.theta, slice.h, kResidualColors[k], model);
+      const SidedLight b = sided_light(m, kResidualColors[k]);
+      ours[k].returned += slice.weight * a.returned, ours[k].forward += slice.weight * a.forward;
+      theirs[k].returned += slice.weight * b.returned, theirs[k].forward += slice.weight * b.forward;
     }
   }
-  r.forward = (forward_model - forward) / body;
-  r.surface = surface;
+  for (size_t k = 0; k < kColors; ++k) {
+    r.returned[k] = ours[k].returned / theirs[k].returned - 1;
+    r.forward[k] = ours[k].forward / theirs[k].forward - 1;
+  }
+  r.returned_dark = ours.back().returned - theirs.back().returned;
   r.uncollided = ply_uncollided_mean(p) - s.whole.uncollided.mean;
-  r.color_rms = std::sqrt(square);
-  for (size_t k = 0; k < kBright.size(); ++k) r.lost[k] = lost_model[k] / lost[k] - 1;
   return r;
 }
 

@@ -109,6 +109,7 @@ typedef struct WPlyMaterial {
   float e_r_h4, b, s_f0, e_f;
   float d_f, s_b, d_b, v_c;
   float v_e, n0, n1, tilt; /* tilt = tan of the angle between surface fibres and the ply axis, signed */
+  float hits_back, pad0, pad1, pad2; /* hits_back: fibre hits of lobe B's light per hit of lobe F's */
 } WPlyMaterial;
 
 /* Fibre detail of one ply material (kernels/appearance/fibre_detail.clh). Lengths in ply radii unless said. */
@@ -210,7 +211,7 @@ typedef struct WFrame {
 static_assert(sizeof(w_float4) == 16);
 static_assert(sizeof(WAnchor) == 32);
 static_assert(sizeof(WGrid) == 48);
-static_assert(sizeof(WPlyMaterial) == 112);
+static_assert(sizeof(WPlyMaterial) == 128);
 static_assert(sizeof(WFibreDetail) == 48);
 static_assert(sizeof(WFibreMaterial) == 48);
 static_assert(sizeof(WSurfaceMaterial) == 48);

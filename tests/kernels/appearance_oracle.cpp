@@ -39,6 +39,13 @@ double oracle_trimmed_logistic(double x, double s) {
   return 1 / (4 * s * c * c * std::tanh(kPi / (2 * s)));
 }
 
+double oracle_skewed_logistic(double x, double below, double above) {
+  // One integral per side of the unnormalised density 1/cosh^2.
+  const auto half = [](double s) { return 2 * s * std::tanh(kPi / (2 * s)); };
+  const double wrapped = std::remainder(x, 2 * kPi), c = std::cosh(wrapped / (2 * (wrapped < 0 ? below : above)));
+  return 1 / (c * c * (half(below) + half(above)));
+}
+
 PlyOracle::PlyOracle(const WPlyMaterial& material, dvec3 t, dvec3 n, dvec3 wv) : m_(material), t_(t) {
   n = glm::normalize(n - glm::dot(n, t) * t);
   frame(t, n, wv, &x_, &y_);
@@ -57,15 +64,20 @@ PlyOracle::PlyOracle(const WPlyMaterial& material, dvec3 t, dvec3 n, dvec3 wv) :
 
   const double f0 = m_.f0, fresnel = f0 + (1 - f0) * std::pow(1 - std::cos(theta_vf_), 5);
   const double reflected = std::clamp(fresnel * m_.e_r * (1 + m_.e_r_h4 * std::pow(h, 4)), 0.0, 1.0);
-  const double forward = std::exp(-m_.b * (1 + 3 * std::pow(1 - cos_t, 3)) * c);
-  const double hits = std::max(1.0, m_.n0 + double(m_.n1) * c);  // whatever collided met a fibre
+  const double sin_t = glm::dot(wv, t);
+  const double decay =
+      m_.b * (1 + 3.5 * std::pow(1 - cos_t, 2)) * std::exp(std::clamp(2.25 * m_.tilt * h * sin_t, -3., 3.));
+  const double forward = std::exp(-decay * c), chord_hits = m_.n0 + double(m_.n1) * c;
   for (int k = 0; k < 3; ++k) {
     const double omega = fresnel + (1 - fresnel) * rgb(m_.fibre)[k];
-    const double body = omega * std::pow(1 + (hits - 1) / 4 * (1 - omega), -4);
+    // Whatever collided met a fibre.
+    const auto body = [&](double hits) {
+      return omega * std::pow(1 + (std::max(1.0, hits) - 1) / 4 * (1 - omega), -4);
+    };
     const bool direct = m_.fibre.w != 0;
     energy[0][k] = reflected;
-    energy[1][k] = (1 - reflected) * forward * (direct ? rgb(m_.forward)[k] : body);
-    energy[2][k] = (1 - reflected) * (1 - forward) * (direct ? rgb(m_.back)[k] : body);
+    energy[1][k] = (1 - reflected) * forward * (direct ? rgb(m_.forward)[k] : body(chord_hits));
+    energy[2][k] = (1 - reflected) * (1 - forward) * (direct ? rgb(m_.back)[k] : body(m_.hits_back * chord_hits));
   }
 }
 
@@ -77,8 +89,9 @@ double PlyOracle::pdf(int lobe, dvec3 w) const {
   }
   const double phi = std::atan2(glm::dot(w, y_), glm::dot(w, x_)), k = 2 * h * c;
   const double variance = m_.v_e + (double(m_.v_c) - m_.v_e) * c;
+  const double s_f = m_.s_f0 * std::pow(c, double(m_.e_f)) + 0.25;
   const double azimuth =
-      lobe == 1 ? oracle_trimmed_logistic(phi - (kPi - m_.d_f * k), m_.s_f0 * std::pow(c, double(m_.e_f)) + 0.05)
+      lobe == 1 ? oracle_skewed_logistic(phi - (kPi - m_.d_f * k), s_f * (1 - 0.35 * h), s_f * (1 + 0.35 * h))
                 : oracle_trimmed_logistic(phi - (gamma + m_.d_b * k), m_.s_b);
   return oracle_longitudinal(theta_v_, angle_to_plane(w, t_), variance) * azimuth;
 }

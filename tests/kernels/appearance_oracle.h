@@ -26,5 +26,7 @@ struct PlyOracle {
 double oracle_longitudinal(double theta_i, double theta_o, double variance);
 /// Density of the logistic on [-pi, pi] by cosh and tanh.
 double oracle_trimmed_logistic(double x, double s);
+/// The same with one scale below 0 and another above, equal densities at 0.
+double oracle_skewed_logistic(double x, double below, double above);
 
 }  // namespace wale::test

@@ -117,8 +117,7 @@ TEST_P(PlyBsdf, WhiteFibresLoseNothingToDetail) {
                                 runner.upload(views));
     double worst = 0;
     for (size_t i = 0; i < out.size(); i += 15)
-      for (int k = 0; k < 3; ++k)
-        worst = std::max(worst, std::abs(out[i + k] + out[i + 3 + k] + out[i + 6 + k] - 1));
+      for (int k = 0; k < 3; ++k) worst = std::max(worst, std::abs(out[i + k] + out[i + 3 + k] + out[i + 6 + k] - 1));
     EXPECT_LT(worst, tolerance::kFurnace) << variant;
   }
 }
@@ -132,6 +131,22 @@ TEST_P(PlyBsdf, PaperShadowLosesEnergy) {
                               runner.upload(floats(ply_view(0.2, 0.1))));
   const double surface = out[0], body = out[3] + out[6];
   EXPECT_NEAR(body, (1 - surface) * (1 - 0.7 * (1 - 0.2)), 1e-5);
+}
+
+// Light that turns back has gone through more fibres: hits_back darkens lobe B alone, and white stays white.
+TEST_P(PlyBsdf, LightThatTurnsBackIsDarker) {
+  const KernelRunner runner(kPlyKernels, GetParam());
+  const auto view = runner.upload(floats(ply_view(0.3, 0.2)));
+  WPlyMaterial m = preset("wool");
+  const auto energies = [&](float color, float hits_back) {
+    m.fibre = {color, color, color, 0};
+    m.hits_back = hits_back;
+    return runner.run("energies", 1, 15, runner.upload<WPlyMaterial>({m}), view);
+  };
+  const auto even = energies(0.8f, 1), more = energies(0.8f, 1.5f);
+  EXPECT_EQ(even[3], more[3]);
+  EXPECT_LT(more[6], 0.85 * even[6]);
+  EXPECT_NEAR(energies(1, 1)[6], energies(1, 3)[6], 1e-6);
 }
 
 TEST_P(PlyBsdf, DarkFibresAbsorb) {

@@ -29,15 +29,24 @@ TEST_P(PresetFit, MatchesItsFibres) {
                               double(f.beta_tt),          double(f.gamma_tt), Longitudinal::d_eon};
   FibreRecipe recipe = fibre_recipe(appearance());
   recipe.seed = 7000;  // cross-sections that the fit has not seen
-  const Residuals r = residuals(ply_parameters(material()), measure_slices(recipe, fibre, {0}, 12000, 77)[0]);
-  EXPECT_LT(r.tv_worst, .13);
-  EXPECT_GT(r.tv_worst, 0);
-  EXPECT_LT(r.tv_noise, .04);
-  EXPECT_NEAR(r.forward, 0, .07);
-  EXPECT_NEAR(r.uncollided, 0, .01);
-  EXPECT_NEAR(r.surface, 0, .003);
-  EXPECT_LT(r.color_rms, .04);
-  for (const double lost : r.lost) EXPECT_NEAR(lost, 0, .06);
+  const auto slices = measure_slices(recipe, fibre, {0, 30 * kDegree, 60 * kDegree}, 12000, 77);
+  const PlyParameters p = ply_parameters(material());
+  for (const Slices& s : slices) {
+    const Residuals r = residuals(p, s);
+    SCOPED_TRACE(s.theta / kDegree);
+    const bool oblique = s.theta > 45 * kDegree;
+    EXPECT_LT(r.tv_worst, oblique ? .20 : .13);
+    EXPECT_GT(r.tv_worst, 0);
+    EXPECT_LT(r.tv_noise, .04);
+    EXPECT_NEAR(r.uncollided, 0, .01);
+    EXPECT_NEAR(r.surface, 0, oblique ? .01 : .003);
+    // What comes back is what a cloth lit from the front shows: to 3 %, the noise of these measurements is 1 %.
+    for (size_t k = 0; kResidualColors[k] >= .9; ++k) {
+      EXPECT_NEAR(r.returned[k], 0, oblique ? .07 : .04) << kResidualColors[k];
+      EXPECT_NEAR(r.forward[k], 0, oblique ? .07 : .04) << kResidualColors[k];
+    }
+    EXPECT_NEAR(r.returned_dark, 0, .007);
+  }
 }
 
 /// The bench's closed forms against the BSDF's oracle, integrated over directions.
@@ -54,8 +63,14 @@ TEST_P(PresetFit, ModelOfTheFitIsTheRenderers) {
         const double c = k == 0 ? m.fibre.x : (k == 1 ? m.fibre.y : m.fibre.z);
         const double body = (oracle.energy[1][k] + oracle.energy[2][k]) / (1 - oracle.energy[0][k]);
         EXPECT_NEAR(body, ply_body_albedo(p, theta, h, c), 1e-6);
+        const double forward = ply_forward_weight(p, theta, h) * ply_lobe_albedo(p, theta, h, c).forward;
+        EXPECT_NEAR(oracle.energy[1][k], (1 - oracle.energy[0][k]) * forward, 1e-6);
       }
-      const double forward = oracle.energy[1].x / (oracle.energy[1].x + oracle.energy[2].x);
+      WPlyMaterial white = m;
+      white.fibre = {1, 1, 1, 0};
+      const test::PlyOracle lossless(white, t, dvec3(std::sqrt(1 - h * h), h, 0),
+                                     {std::cos(theta), 0, std::sin(theta)});
+      const double forward = lossless.energy[1].x / (lossless.energy[1].x + lossless.energy[2].x);
       AngleHistogram phi{}, inclination{};
       constexpr int kFine = 4;
       constexpr int kSteps = kFine * kAngleBins;
