@@ -36,6 +36,15 @@ class Lobe {
   double center_, below_, above_, mass_below_, mass_above_;
 };
 
+/// Adds w, spread evenly over a width of kAngleBins / kFineBins bins about `at` (in bins), to one or two bins.
+void deposit(AngleHistogram& out, double at, double w) {
+  constexpr double kHalf = 0.5 * kAngleBins / kFineBins;
+  const double border = std::round(at), below = std::clamp((border - at + kHalf) / (2 * kHalf), 0.0, 1.0);
+  const auto bin = [](double i) { return size_t((int(i) + kAngleBins) % kAngleBins); };
+  out[bin(border - 1)] += w * below;
+  out[bin(border)] += w * (1 - below);
+}
+
 }  // namespace
 
 PlyParameters ply_parameters(const WPlyMaterial& m) {
@@ -99,7 +108,7 @@ BodyTurn::BodyTurn(const PlyParameters& p, double theta, double h) {
   const double v = p.v_e + (p.v_c - p.v_e) * chord(h);
   // The body's axis lies in the plane of t and the light: tilted by `lean` towards the light where positive.
   const double lean = -std::atan(kLean * p.twist * h), theta_b = theta + lean;
-  constexpr int kAlong = 144;
+  constexpr int kAlong = kFineBins;
   std::array<double, kAlong> m{};
   double sum = 0;
   for (int j = 0; j < kAlong; ++j) {
@@ -114,9 +123,8 @@ BodyTurn::BodyTurn(const PlyParameters& p, double theta, double h) {
       const double angle = -kPi / 2 + kPi * (j + 0.5) / kAlong, w = m[size_t(j)] / sum;
       const double s = std::sin(angle), x = std::cos(angle) * std::cos(phi_b), y = std::cos(angle) * std::sin(phi_b);
       const double xt = x * std::cos(lean) + s * std::sin(lean), st = s * std::cos(lean) - x * std::sin(lean);
-      const auto bin = [](double share) { return size_t(std::clamp(int(share * kAngleBins), 0, kAngleBins - 1)); };
-      phi[size_t(i)][bin((std::atan2(y, xt) + kPi) / (2 * kPi))] += w;
-      inclination[size_t(i)][bin((std::asin(std::clamp(st, -1.0, 1.0)) + kPi / 2) / kPi)] += w;
+      deposit(phi[size_t(i)], (std::atan2(y, xt) + kPi) / (2 * kPi) * kAngleBins, w);
+      deposit(inclination[size_t(i)], (std::asin(std::clamp(st, -1.0, 1.0)) + kPi / 2) / kPi * kAngleBins, w);
       back[size_t(i)] += xt > 0 ? w : 0;
     }
   }

@@ -100,7 +100,7 @@ TEST_P(PliesAndFibres, LookAndMeasureAlike) {
   if (!long_tests() && GetParam() != "wool" && GetParam() != "cotton") GTEST_SKIP() << "long test: ./wale test --long";
   const int down = long_tests() ? 48 : 24;
   for (const std::string& light : kLights) {
-    const int spp = long_tests() ? 512 : 96;
+    const int spp = long_tests() ? 128 : 96;
     const Taken fibres = take_swatch(swatch(GetParam(), light, Detail::fibres, down), spp, 1);
     const Taken plies = take_swatch(swatch(GetParam(), light, Detail::maps, down), 2 * spp, 2);
     const auto f = mean_rgb(fibres.image), p = mean_rgb(plies.image);
