@@ -14,8 +14,8 @@ struct Features {
   bool plies = false, fibres = false;  ///< curves shaded as plies, and as single fibres
   bool triangles = false, spheres = false;
   bool environment = false, lights = false;  ///< lights: something is sampled by next-event estimation
-  bool detail = false;        ///< fibres show on plies, by maps
-  bool paper_lobes = false;   ///< bodies of plies are Lambert lobes
+  bool detail = false;                       ///< fibres show on plies, by maps
+  bool paper_lobes = false;                  ///< bodies of plies are Lambert lobes
   bool aovs = false;
   bool ply_colors = false;  ///< colours that vary over the cloth
   LocalStage local_stage = LocalStage::exact;

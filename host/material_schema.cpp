@@ -43,7 +43,8 @@ Type ply() {
   return object(
       {
           {"file", file(), "a material in a file of its own; the keys given here override it"},
-          {"preset", word({"cotton", "wool", "silk", "polyester", "acrylic", "mohair"}), "appearance to start from", "wool"},
+          {"preset", word({"cotton", "wool", "silk", "polyester", "acrylic", "mohair"}), "appearance to start from",
+           "wool"},
           {"color", color(), "what a thick layer of the cloth shows in diffuse light"},
           {"fibre_color", color(), "transmission of one fibre, instead of color"},
           {"reflect", color(), "body colour seen from the lit side; with transmit, instead of color"},

@@ -168,7 +168,8 @@ std::vector<uint32_t> bake_ply_colors(const Fabric& fabric, const PlyAppearance&
       std::optional<Rgb> last;
       uint32_t word = 0;
       for (size_t k = 0; k < run.count; ++k) {
-        const StrandPlace* place = fabric.place.empty() ? nullptr : &fabric.place[run.first_place + (run.one_place ? 0 : k)];
+        const StrandPlace* place =
+            fabric.place.empty() ? nullptr : &fabric.place[run.first_place + (run.one_place ? 0 : k)];
         std::optional<Rgb> color = palette.at(place, int(p));
         if (!color && spread > 0) color = encoder.own();
         if (color && (k == 0 || color != last)) word = encoder.word(heathered(*color, heather, spread));

@@ -117,8 +117,9 @@ TEST_P(PliesAndFibres, LookAndMeasureAlike) {
     const double noise = 3 * std::sqrt(fibres.variance + plies.variance);
     for (size_t k = 0; k < 3; ++k) {
       EXPECT_LT(std::abs(p[k] - f[k]), std::max((0.05 + noise) * f[k], 0.01)) << light << " channel " << k;
+      // 15 %; on dark channels, where a few per cent of reflected light is all there is, 0.02.
       if (long_tests()) {
-        EXPECT_LT(rmse[k], f[k] < 0.05 ? 0.30 : 0.15) << light << " channel " << k;
+        EXPECT_LT(rmse[k] * f[k], std::max(0.15 * f[k], 0.02)) << light << " channel " << k;
       }
     }
     EXPECT_GT(bytes, 40);
