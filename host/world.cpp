@@ -10,6 +10,7 @@
 #include "geom/error.h"
 #include "host/materials.h"
 #include "host/ply_colors.h"
+#include "host/viewpoint.h"
 
 namespace wale {
 namespace {
@@ -25,16 +26,6 @@ struct Bounds {
 w_float4 vec4(const dvec3& v, double w = 0) { return {float(v.x), float(v.y), float(v.z), float(w)}; }
 w_float4 rgb4(const Rgb& c, double w = 0) { return {float(c[0]), float(c[1]), float(c[2]), float(w)}; }
 std::array<float, 3> rgb3(const Rgb& c) { return {float(c[0]), float(c[1]), float(c[2])}; }
-
-/// Orthonormal right, up and forward of a viewer; `up` need not be perpendicular.
-struct Frame {
-  dvec3 right, up, forward;
-  Frame(const dvec3& from, const dvec3& to, const dvec3& up_hint)
-      : right(0), up(0), forward(glm::normalize(to - from)) {
-    right = glm::normalize(glm::cross(forward, up_hint));
-    up = glm::cross(right, forward);
-  }
-};
 
 class Builder {
  public:
@@ -249,7 +240,7 @@ class Builder {
   }
 
   void add_quad_light(const LightScene& light, LightTableBuilder& tables) {
-    const Frame frame(light.position, light.look_at, light.up);
+    const ViewFrame frame(light.position, light.look_at, light.up);
     const int material = add_emitter(light.radiance, !light.two_sided);
     const size_t first = triangles_.size();
     // right x up points against forward: the order below makes the front face look_at.
@@ -312,37 +303,12 @@ class Builder {
     world_.light_names.push_back("environment");
   }
 
-  // Without a camera in the scene: a portrait lens that sees all fabrics from the front, a little from above.
-  CameraScene framed() const {
-    CameraScene c = scene_.camera;
-    const Bounds& b = fabric_bounds_.empty() ? bounds_ : fabric_bounds_;
-    const dvec3 centre = b.empty() ? dvec3(0) : b.centre();
-    c.look_at = centre;
-    // fov is vertical; a picture higher than wide sees less across.
-    const double aspect = std::min(1.0, double(scene_.film.width) / double(scene_.film.height));
-    const double half_angle = std::atan(aspect * std::tan(0.5 * c.fov));
-    c.position = centre + glm::normalize(dvec3(0.25, 0.35, 1)) * (1.05 * b.radius() / std::sin(half_angle));
-    c.up = dvec3(0, 1, 0);
-    return c;
-  }
-
   WCamera camera() const {
-    const CameraScene c = scene_.camera_given ? scene_.camera : framed();
-    const Frame frame(c.position, c.look_at, c.up);
-    WCamera out{};
-    out.origin = vec4(c.position - world_.origin);
-    out.right = vec4(frame.right);
-    out.up = vec4(frame.up);
-    out.forward = vec4(frame.forward);
-    out.width = scene_.film.width;
-    out.height = scene_.film.height;
-    out.kind = c.orthographic ? 1 : 0;
-    out.half_height = float(c.orthographic ? 0.5 * c.height : std::tan(0.5 * c.fov));
-    out.half_width = out.half_height * float(out.width) / float(out.height);
-    out.aperture = float(c.aperture);
-    out.focus = float(c.focus > 0 ? c.focus : glm::length(c.look_at - c.position));
-    out.filter = scene_.film.filter == "box" ? 0 : 1;
-    return out;
+    const Bounds& b = fabric_bounds_.empty() ? bounds_ : fabric_bounds_;
+    const CameraScene seen =
+        scene_.camera_given ? scene_.camera
+                            : framed_camera(scene_.camera, scene_.film, b.empty() ? dvec3(0) : b.centre(), b.radius());
+    return device_camera(seen, scene_.film, world_.origin);
   }
 
   struct Sphere {
