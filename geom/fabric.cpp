@@ -61,7 +61,7 @@ Fabric knit_fabric(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spec
   const PartnerMap partners = match_partners(pattern);
   fabric.ply_radius = map.yarn.ply_radius;
   fabric.yarn_radius = map.yarn_radius;
-  fabric.fibre_radius = map.flyaway_radius;
+  fabric.flyaway_radius = map.flyaway_radius;
   std::unique_ptr<FibreBundle> bundle;
   if (spec.detail == Detail::fibres) {
     bundle = std::make_unique<FibreBundle>(spec.fibres, fabric.ply_radius);

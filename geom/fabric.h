@@ -105,7 +105,8 @@ struct Fabric {
   std::string name;
   int plies = 0;
   double ply_radius = 0, yarn_radius = 0;  ///< metres in the cloth
-  double fibre_radius = 0;                 ///< metres; 0 where no fibre is explicit
+  double fibre_radius = 0;                 ///< of explicit fibres, metres; 0 where there are none
+  double flyaway_radius = 0;               ///< metres
   BaseMesh mesh;
   std::vector<Chart> charts;
   std::vector<dvec2> uv_per_metre;  ///< per chart: UV = uv_per_metre * (x, y), (x, y) in the flat knit

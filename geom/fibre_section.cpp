@@ -14,8 +14,34 @@ constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr double kMaxPacking = 0.7;    ///< disordered discs jam at 0.82; the wall takes its share
 constexpr double kOverlapLeft = 1e-3;  ///< fibre radii; pushing apart stops here
 
+constexpr double kMostOverlap = 0.1;  ///< fibre radii; more than that and it is no section of fibres
+
 struct Disc {
   double x, y;
+};
+
+/// Discs by cells a little wider than they are: who may touch whom.
+class Grid {
+ public:
+  Grid(const std::vector<Disc>& discs, double radius) : size_(2.1 * radius), across_(int(2 / size_) + 3) {
+    cells_.resize(size_t(across_) * size_t(across_));
+    for (size_t i = 0; i < discs.size(); ++i) cells_[cell(discs[i].x, discs[i].y)].push_back(i);
+  }
+  template <typename Visit>
+  void beside(const Disc& d, const Visit& visit) const {
+    for (const double dy : {-size_, 0.0, size_})
+      for (const double dx : {-size_, 0.0, size_})
+        for (const size_t i : cells_[cell(d.x + dx, d.y + dy)]) visit(i);
+  }
+
+ private:
+  size_t cell(double x, double y) const {
+    const auto at = [&](double v) { return std::clamp(int((v + 1) / size_) + 1, 0, across_ - 1); };
+    return size_t(at(y)) * size_t(across_) + size_t(at(x));
+  }
+  double size_;
+  int across_;
+  std::vector<std::vector<size_t>> cells_;
 };
 
 class Placer {
@@ -39,9 +65,12 @@ class Placer {
   /// Deepest overlap of two fibres, fibre radii.
   double overlap() const {
     double deepest = 0;
+    const Grid grid(discs_, radius_);
     for (size_t i = 0; i < discs_.size(); ++i)
-      for (size_t j = 0; j < i; ++j)
-        deepest = std::max(deepest, 2 - std::hypot(discs_[i].x - discs_[j].x, discs_[i].y - discs_[j].y) / radius_);
+      grid.beside(discs_[i], [&](size_t j) {
+        if (j < i)
+          deepest = std::max(deepest, 2 - std::hypot(discs_[i].x - discs_[j].x, discs_[i].y - discs_[j].y) / radius_);
+      });
     return deepest;
   }
 
@@ -72,17 +101,18 @@ class Placer {
   void push_apart() {
     constexpr int kRounds = 4000;
     for (int round = 0; round < kRounds && overlap() > kOverlapLeft; ++round) {
-      for (size_t i = 0; i < discs_.size(); ++i) {
-        for (size_t j = 0; j < i; ++j) {
+      const Grid grid(discs_, radius_);  // of where they were: a pair that only now overlaps waits for the next round
+      for (size_t i = 0; i < discs_.size(); ++i)
+        grid.beside(discs_[i], [&](size_t j) {
+          if (j >= i) return;
           Disc &a = discs_[i], &b = discs_[j];
           const double dx = a.x - b.x, dy = a.y - b.y, d = std::hypot(dx, dy);
           const double apart = 0.5 * (2.0005 * radius_ - d);
-          if (apart <= 0) continue;
+          if (apart <= 0) return;
           const double ux = d > 0 ? dx / d : 1, uy = d > 0 ? dy / d : 0;
           a.x += apart * ux, a.y += apart * uy;
           b.x -= apart * ux, b.y -= apart * uy;
-        }
-      }
+        });
       keep_inside();
     }
   }
@@ -126,6 +156,10 @@ FibreSection make_fibre_section(const FibreRecipe& recipe) {
   for (const Disc& d : placer.place())
     section.fibres.push_back({std::hypot(d.x, d.y), std::atan2(d.y, d.x), kTwoPi * placer.uniform()});
   section.overlap = std::max(0.0, placer.overlap());
+  if (section.overlap > kMostOverlap)
+    user_error(
+        "fibres: {} fibres of packing {} do not fit side by side into a ply; give a smaller packing, or more fibres",
+        recipe.fibres, recipe.packing);
   return section;
 }
 

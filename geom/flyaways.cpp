@@ -164,8 +164,8 @@ void check_flyaways(const FlyawaySpec& spec, const char* fabric) {
   };
   check(spec.hairs, 1e6, "hairs per metre");
   check(spec.loops, 1e6, "loops per metre");
-  check(spec.length, 0.1, "length in metres");
-  check(spec.radius, 0.01, "radius in metres");
+  check(spec.length, kLongestFlyaway, "length in metres");
+  check(spec.radius, kThickestFlyaway, "radius in metres");
 }
 
 double flyaway_segments_per_metre(const FlyawaySpec& spec, const PlyPiece& piece, double tolerance) {

@@ -7,6 +7,8 @@
 namespace wale {
 
 /// Fibres that stand off a ply: hairs with one free end, loops with both ends in the ply.
+constexpr double kLongestFlyaway = 0.1, kThickestFlyaway = 0.01;  ///< metres
+
 struct FlyawaySpec {
   double hairs = 0, loops = 0;  ///< per metre of ply
   double length = 0;            ///< metres: mean length of a hair; 0 = as measured (Zhao et al. 2016)

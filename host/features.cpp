@@ -84,6 +84,7 @@ std::vector<Reason> explain(const World& world, const IntegratorScene& integrato
       {"fibre detail", f.detail,
        f.detail  ? "fabrics.detail is \"maps\" or \"paper\""
        : f.plies ? "fabrics.detail is \"none\""
+       : curves  ? "every fibre is a curve of its own"
                  : "no fabric in the scene"},
       {"Lambert ply lobes", f.paper_lobes, "integrator.ply_lobes is \"" + integrator.ply_lobes + "\""},
       {"feature images", f.aovs, f.aovs ? "an .exr is written" : "only .png is written"},

@@ -35,7 +35,6 @@ void FibreTables::add(const FibreRecipe& wanted, double ply_radius, Detail level
   out.inv_mean_openness = float(1 / detail.mean_openness());
   out.mean_openness = float(detail.mean_openness());
   out.tilt_variance = float(detail.tilt_variance());
-  out.ply_radius = float(ply_radius);
   details.push_back(out);
   const uint32_t base = uint32_t(candidates.size());
   for (const uint32_t offset : detail.offsets()) offsets.push_back(base + offset);

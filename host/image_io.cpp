@@ -105,7 +105,9 @@ void write_exr(const Image& image, const std::filesystem::path& file) {
 Image read_image(const std::filesystem::path& file, bool finite) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) user_error("{}: no such image file", file.string());
-  const auto input = OIIO::ImageInput::open(file.string());
+  OIIO::ImageSpec how;
+  how.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are stored: alpha must not darken them
+  const auto input = OIIO::ImageInput::open(file.string(), &how);
   if (!input) user_error("{}: cannot be read as an image: {}", file.string(), one_line(OIIO::geterror()));
   const OIIO::ImageSpec& spec = input->spec();
   const uint64_t values = uint64_t(std::max(0, spec.width)) * std::max(0, spec.height) * std::max(0, spec.nchannels);

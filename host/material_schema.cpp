@@ -24,7 +24,7 @@ Type fibres() {
       {"radial_beta", number({0, 20}), "fall of their density outwards; 0 = uniform"},
       {"radial_epsilon", number({0, 0.5}), "share of them that is spread uniformly"},
       {"migration_min", number({0, 1, true}), "least share of its distance to which a fibre wanders in; 1 = none"},
-      {"migration_rate", number({0, 1000}), "migrations per turn of the bundle"},
+      {"migration_rate", number({0, 100}), "migrations per turn of the bundle"},
       {"seed", integer({0, 4294967295.0}), "another seed, another section"},
       {"transmit_width", number(width, Unit::angle), "along the fibre, of light that goes through one"},
       {"transmit_azimuth_width", number(width, Unit::angle), "around the fibre, of light that goes through one"},

@@ -203,6 +203,17 @@ WFibreMaterial fibre_material(const PlyAppearance& appearance) {
   m.reflect = {ply.f0, ply.f0, ply.f0, 0};
   m.transmit = ply.fibre;
   m.transmit.w = 0;
+  if (appearance.forward) {
+    // Body colours say what many fibres do together: the fibre whose bundle has their mean albedo, by the ply's own
+    // law.
+    PlyAppearance without = appearance;
+    without.forward = without.back = std::nullopt;
+    const ThickLayer layer(ply_material(without));
+    float* const channels[] = {&m.transmit.x, &m.transmit.y, &m.transmit.z};
+    for (size_t k = 0; k < 3; ++k)
+      *channels[k] = float(layer.fibre_of_albedo(0.5 * ((*appearance.forward)[k] + (*appearance.back)[k])));
+    m.transmit.w = 1;  // colours that vary are tints
+  }
   m.beta_r = ply.beta_r;
   const auto width = [](const std::optional<double>& given, double degrees, const char* what) {
     const double radians = given.value_or(degrees * kDegree);

@@ -28,7 +28,7 @@ WFibreMaterial fibre_material(const PlyAppearance& appearance);
 double fibre_density(const PlyAppearance& appearance);
 
 /// Parameters of a mesh's material, without emission and light. Throws a user error on values out of range: colour
-/// [0,1], roughness [0,1], ior [1,3].
+/// [0,1], roughness [0,1], ior [1,4].
 WSurfaceMaterial surface_material(const SurfaceAppearance& appearance);
 
 }  // namespace wale

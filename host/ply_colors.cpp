@@ -84,6 +84,12 @@ class Palette {
   double stripes_ = 0;
 };
 
+/// Heather of a tint, which can only darken: its factor runs from (1 - spread)/(1 + spread) to 1.
+Rgb tinted(const Rgb& color, double hash, double spread) {
+  const double factor = (1 + hash * spread) / (1 + spread);
+  return {factor * color[0], factor * color[1], factor * color[2]};
+}
+
 /// Words of seen colours; each distinct one is converted once.
 class Encoder {
  public:
@@ -95,6 +101,7 @@ class Encoder {
   }
 
   const Rgb& own() const { return own_; }
+  bool tints() const { return tint_; }
 
   uint32_t word(const Rgb& seen) {
     const auto [found, is_new] = words_.try_emplace(seen, 0);
@@ -172,7 +179,8 @@ std::vector<uint32_t> bake_ply_colors(const Fabric& fabric, const PlyAppearance&
             fabric.place.empty() ? nullptr : &fabric.place[run.first_place + (run.one_place ? 0 : k)];
         std::optional<Rgb> color = palette.at(place, int(p));
         if (!color && spread > 0) color = encoder.own();
-        if (color && (k == 0 || color != last)) word = encoder.word(heathered(*color, heather, spread));
+        if (color && (k == 0 || color != last))
+          word = encoder.word(encoder.tints() ? tinted(*color, heather, spread) : heathered(*color, heather, spread));
         last = color;
         if (color) words[run.first_vertex + curve * run.count + k] = word;
       }

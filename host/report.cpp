@@ -45,6 +45,7 @@ Json fabric_json(const Fabric& f, const MeshReport& mesh) {
       {"yarn_radius_m", f.yarn_radius},
       {"ply_radius_m", f.ply_radius},
       {"fibre_radius_m", f.fibre_radius},
+      {"flyaway_radius_m", f.flyaway_radius},
       {"mirrored", f.report.mirrored},
       {"patches", f.patches.size()},
       {"cells", f.cell_triangles.offset.empty() ? 0 : f.cell_triangles.offset.size() - 1},
@@ -110,9 +111,10 @@ std::string build_report_text(const World& world, const std::vector<TextileMeasu
     }
     out += fmt::format("  knitted    {} full yarns, {} runs, {} segments, {} vertices ({} bytes each)\n", r.full_yarns,
                        r.runs, r.segments, r.vertices, W_VERTEX_WORDS * 4);
-    if (r.fibres)
-      out += fmt::format("  fibres     {} curves of radius {:.4f} mm, {} of them flyaways\n", r.fibres,
-                         1e3 * f.fibre_radius, r.flyaways);
+    if (r.fibres > r.flyaways)
+      out += fmt::format("  fibres     {} curves of radius {:.4f} mm\n", r.fibres - r.flyaways, 1e3 * f.fibre_radius);
+    if (r.flyaways)
+      out += fmt::format("  flyaways   {} curves of radius {:.4f} mm\n", r.flyaways, 1e3 * f.flyaway_radius);
     out += fmt::format("  cut        {} samples outside the cloth, {} in the half stitch past its borders\n",
                        r.samples_outside, r.samples_extrapolated);
     for (const auto& s : r.snapped_repeats)

@@ -113,6 +113,8 @@ void join_material_files(JsonNode& scene, const std::filesystem::path& folder) {
     JsonNode base = read_json(path);
     if (base.kind != JsonNode::Kind::object)
       fail(base, "materials." + name, "a ply material is needed in this file, not {}", base.describe());
+    if (const JsonNode* type = base.find("type"); type && type->kind == JsonNode::Kind::string && type->text != "ply")
+      fail(*type, "materials." + name, "a material of type \"ply\" is needed in this file, not \"{}\"", type->text);
     if (JsonNode* fitted = base.find("scattering"); fitted && (node.has("optical_radius") || node.has("translucency")))
       std::erase_if(fitted->members, [](const JsonNode::Member& m) { return m.key == "optical_radius"; });
     if (const JsonNode* again = base.find("file"))

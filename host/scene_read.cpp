@@ -152,8 +152,12 @@ Detail detail_of(const std::string& word) {
                            : Detail::fibres;
 }
 
-FlyawaySpec flyaways_of(const JsonNode& node) {
+FlyawaySpec flyaways_of(const JsonNode& node, const std::string& path) {
   constexpr double kPerMillimetre = 1e3;
+  for (const auto& [key, most] : {std::pair{"length", kLongestFlyaway}, std::pair{"radius", kThickestFlyaway}})
+    if (number_of(node, key) > most)
+      fail(node[key], path + ".flyaways." + key, "{:g} mm is longer than any; valid: 0 to {:g} mm",
+           kPerMillimetre * number_of(node, key), kPerMillimetre * most);
   return {kPerMillimetre * number_of(node, "hairs"), kPerMillimetre * number_of(node, "loops"),
           number_of(node, "length"), number_of(node, "radius")};
 }
@@ -170,7 +174,7 @@ FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index) {
   fabric.spec.ply_radius = number_of(yarn, "ply_radius");
   fabric.spec.height_offset = number_of(node, "height_offset");
   fabric.spec.tolerance = number_of(node, "tolerance");
-  fabric.spec.flyaways = flyaways_of(node["flyaways"]);
+  fabric.spec.flyaways = flyaways_of(node["flyaways"], path);
   fabric.spec.detail = detail_of(node["detail"].text);
   fabric.mesh = mesh_of(node["mesh"]);
   fabric.transform = transform_of(node["transform"]);

@@ -104,7 +104,8 @@ ThickLayer::ThickLayer(const WPlyMaterial& m) {
       total += weight;
       cosines += weight * (surface * g_r + (1 - surface) * (forward * g_f + (1 - forward) * g_b));
       const double hits = m.n0 + m.n1 * c;
-      nodes_.push_back({weight, surface, forward, fresnel, std::max(hits, 1.0), std::max(m.hits_back * hits, 1.0)});
+      nodes_.push_back(
+          {weight, surface, forward, fresnel, std::max(hits, 1.0), std::max(m.hits_back * hits, 1.0), g_r, g_f, g_b});
     }
   }
   // A ply without fibres scatters nothing; any g does.
@@ -112,30 +113,53 @@ ThickLayer::ThickLayer(const WPlyMaterial& m) {
   for (Node& node : nodes_) node.weight = total > 0 ? node.weight / total : 1.0 / double(nodes_.size());
 }
 
-double ThickLayer::albedo(double fibre) const {
-  double lost = 0;
+ThickLayer::Scattered ThickLayer::scattered(double fibre) const {
+  Scattered out;
+  double cosines = 0;
   for (const Node& n : nodes_) {
     const double absorbed = (1 - n.fresnel) * (1 - fibre);
     const auto body = [&](double hits) { return (1 - absorbed) * std::pow(1 + 0.25 * (hits - 1) * absorbed, -4); };
-    lost += n.weight * (1 - n.surface) * (1 - n.forward * body(n.hits) - (1 - n.forward) * body(n.hits_back));
+    const double f = (1 - n.surface) * n.forward * body(n.hits);
+    const double b = (1 - n.surface) * (1 - n.forward) * body(n.hits_back);
+    out.lost += n.weight * (1 - n.surface - f - b);
+    cosines += n.weight * (n.surface * n.cos_r + f * n.cos_f + b * n.cos_b);
   }
-  return 1 - lost;
+  // Of what is left: the surface's light, which turns back, is most of it where fibres are dark.
+  out.cosine = out.lost < 1 ? std::clamp(cosines / (1 - out.lost), -0.99, 0.99) : 0;
+  return out;
 }
 
+double ThickLayer::albedo(double fibre) const { return 1 - scattered(fibre).lost; }
+
 double ThickLayer::seen(double fibre) const {
-  const double a = albedo(fibre), s = std::sqrt(std::max(0.0, (1 - a) / (1 - a * g_)));
+  const Scattered of = scattered(fibre);
+  const double s = std::sqrt(std::max(0.0, of.lost / (1 - (1 - of.lost) * of.cosine)));
   return (1 - s) * (1 - 0.139 * s) / (1 + 1.17 * s);
 }
 
-double ThickLayer::fibre(double wanted) const {
+namespace {
+
+/// Where a strictly rising function on [0,1] with value 1 at 1 takes the wanted value; 0 below its range.
+template <typename Function>
+double inverse(const Function& rising, double wanted) {
   if (wanted >= 1) return 1;
-  if (wanted <= seen(0)) return 0;
+  if (wanted <= rising(0)) return 0;
   double low = 0, high = 1;
   for (int i = 0; i < 52; ++i) {
     const double middle = 0.5 * (low + high);
-    (seen(middle) < wanted ? low : high) = middle;
+    (rising(middle) < wanted ? low : high) = middle;
   }
   return 0.5 * (low + high);
+}
+
+}  // namespace
+
+double ThickLayer::fibre(double wanted) const {
+  return inverse([&](double c) { return seen(c); }, wanted);
+}
+
+double ThickLayer::fibre_of_albedo(double wanted) const {
+  return inverse([&](double c) { return albedo(c); }, wanted);
 }
 
 Rgb ThickLayer::fibre(const Rgb& c) const { return {fibre(c[0]), fibre(c[1]), fibre(c[2])}; }

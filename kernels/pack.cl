@@ -36,7 +36,7 @@ W_INLINE float mitre_reach(float3 t0, float3 t1, float r) {
   return r * length(cross(t0, t1)) / fmax(1.0f + dot(t0, t1), 1e-6f);
 }
 
-/* The segment is too short for the mitres at its ends (science: valid iff L >= r (tan(b0/2) + tan(b1/2))). */
+/* The segment is too short for the mitres at its ends (a mitre is valid iff L >= r (tan(b0/2) + tan(b1/2))). */
 W_INLINE int bad_segment(float3 e, float3 t_before, float3 t, float3 t_after, float r) {
   return dot(t, t) == 0.0f || mitre_reach(t_before, t, r) + mitre_reach(t, t_after, r) > length(e);
 }

@@ -122,13 +122,13 @@ typedef struct WFibreDetail {
   w_uint first_offset; /* of its W_DETAIL_BINS + 1 offsets into the candidates */
   float turns, wander; /* turns of the bundle, and migrations, per metre of ply */
   float fibre_radius, migration_min, twist, mean_distance;
-  float inv_mean_openness, mean_openness, tilt_variance, ply_radius; /* metres */
+  float inv_mean_openness, mean_openness, tilt_variance, pad0;
 } WFibreDetail;
 
 /* Far-field scattering of one fibre (docs/appearance.md): R at the surface, TT through it. */
 typedef struct WFibreMaterial {
   w_float4 reflect;  /* rgb reflectance at normal incidence (Schlick) */
-  w_float4 transmit; /* rgb colour of light that went through; w unused */
+  w_float4 transmit; /* rgb colour of light that went through; w = 1: varying colours tint it */
   float beta_r, beta_tt; /* longitudinal widths, radians */
   float gamma_tt;        /* azimuthal width of TT, radians */
   float pad0;

@@ -42,7 +42,8 @@ __kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_P
   const WPlySurface s = w_ply_surface(&scene, vertices, &ray, &h);
   WFibreMaterial material = materials[s.material & ~W_MATERIAL_FIBRE];
 #ifdef W_HAS_PLY_COLORS
-  if (colors[s.segment] & W_COLOR_GIVEN) material.transmit.xyz = w_ply_color(colors[s.segment]);
+  if (colors[s.segment] & W_COLOR_GIVEN)
+    material.transmit.xyz = w_ply_color(colors[s.segment]) * (material.transmit.w != 0.0f ? material.transmit.xyz : 1.0f);
 #endif
   const WFibreShade shade = w_fibre_setup(material, s.smooth_t, s.smooth_n, -ray.d);
   const float3 axis = s.u * s.edge;

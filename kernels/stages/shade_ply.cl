@@ -90,7 +90,7 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
   const int lobe = w_ply_choose(&shade, u.x, &left);
 
   const float3 radial = s.x - s.t * dot(s.x, s.t);
-  const float3 out = s.x + radial * 9.5367432e-7f;  // 4 * 2^-22 (science of 8.5: beyond the error of the hit)
+  const float3 out = s.x + radial * 9.5367432e-7f;  // 4 * 2^-22: beyond the error of the hit
   const float sin2 = fmax(1.0f - dot(ray.d, s.t) * dot(ray.d, s.t), 1e-6f);
   const float3 middle = s.x + ray.d * (s.radius * sqrt(fmax(0.0f, 1.0f - s.h * s.h)) * rsqrt(sin2));
 
