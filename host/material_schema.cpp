@@ -57,8 +57,8 @@ Type ply() {
           {"fibre_twist", number(kTwist, Unit::angle), "angle of the surface fibres to the ply, signed"},
           {"scattering", scattering(), "fitted parameters of the ply, each instead of the preset's"},
           {"fibres", fibres(), "what the ply is made of"},
-          {"plies", list(color()), "a colour for each ply of the yarn, over again when there are more plies"},
-          {"stripes", list(stripe), "colours along the yarn, over again from the first"},
+          {"plies", list(color(), 1), "a colour for each ply of the yarn, over again when there are more plies"},
+          {"stripes", list(stripe, 1), "colours along the yarn, over again from the first"},
           {"heather", heather, "unevenly dyed yarn"},
       },
       ply_material_groups());

@@ -91,8 +91,9 @@ Type vector(size_t length, Range range, Unit unit, bool whole) {
   return type;
 }
 
-Type list(Type item) {
+Type list(Type item, size_t fewest) {
   auto type = make(Kind::list);
+  type->length = fewest;
   type->item = std::move(item);
   return type;
 }

@@ -67,7 +67,7 @@ struct SchemaType {
   std::vector<int> integers;         ///< choice_of_integers
   bool only_true = false;            ///< truth
   Type item;                         ///< list, map
-  size_t length = 0;                 ///< vector
+  size_t length = 0;                 ///< vector; list: fewest items
   bool whole = false;                ///< vector of integers
   std::vector<Property> properties;  ///< object
   std::vector<KeyGroup> groups;      ///< object
@@ -87,7 +87,7 @@ Type file();
 Type color();
 Type radiance();
 Type vector(size_t length, Range range, Unit unit = Unit::none, bool whole = false);
-Type list(Type item);
+Type list(Type item, size_t fewest = 0);
 Type map(Type item);
 Type object(std::vector<Property> properties, std::vector<KeyGroup> groups = {});
 Type tagged(std::string tag, std::vector<std::pair<std::string, Type>> alternatives, std::string default_tag = "");

@@ -106,7 +106,7 @@ ordered_json text_of(const SchemaType& type) {
     case Kind::vector:
       return numbers_text(type.length, type.range, type.whole);
     case Kind::list:
-      return {{"type", "array"}, {"items", text_of(*type.item)}};
+      return {{"type", "array"}, {"items", text_of(*type.item)}, {"minItems", type.length}};
     case Kind::map:
       return {{"type", "object"}, {"additionalProperties", text_of(*type.item)}};
     case Kind::object:

@@ -66,6 +66,7 @@ TEST(FibreSection, RefusesWhatCannotBe) {
   EXPECT_ANY_THROW(make_fibre_section({.packing = 0.9}));
   EXPECT_ANY_THROW(make_fibre_section({.radial_epsilon = 0.7}));
   EXPECT_ANY_THROW(make_fibre_section({.migration_min = 0}));
+  EXPECT_ANY_THROW(make_fibre_section({.fibres = 2, .packing = 0.7}));  // two discs of that area do not fit
 }
 
 }  // namespace

@@ -290,5 +290,17 @@ TEST(ViewTransform, UnknownViewIsRefused) {
             "view \"filmic\": not known; valid: \"neutral\", \"srgb\"");
 }
 
+// Red of half coverage is red: colours are taken as they are stored.
+TEST(ReadImage, AlphaDoesNotDarkenColours) {
+  const TemporaryFolder folder;
+  std::string tga(18, '\0');  // Truevision: uncompressed true colour, 1 x 1, 32 bits, 8 of them alpha
+  tga[2] = 2, tga[12] = 1, tga[14] = 1, tga[16] = 32, tga[17] = 8;
+  tga += std::string("\x00\x00\xff\x80", 4);  // blue, green, red, alpha
+  const Image image = read_image(folder.write("red.tga", tga));
+  ASSERT_EQ(image.channels.size(), 4u);
+  EXPECT_NEAR(image.pixels[0], 1, 1e-5);
+  EXPECT_NEAR(image.pixels[1], 0, 1e-5);
+}
+
 }  // namespace
 }  // namespace wale

@@ -169,5 +169,20 @@ TEST(Materials, RefusesOutOfRangeWithTheRange) {
   EXPECT_NE(refusal([](auto& a) { a.fibre_color = Rgb{0, -0.1, 0}; }), "");
 }
 
+// Body colours say what many fibres do together: single fibres are brighter, white ones white.
+TEST(Materials, FibresOfBodyColours) {
+  PlyAppearance look;
+  look.forward = Rgb{1, 0.6, 0.1};
+  look.back = Rgb{1, 0.4, 0.1};
+  const WFibreMaterial fibre = fibre_material(look);
+  EXPECT_EQ(fibre.transmit.x, 1);
+  EXPECT_GT(fibre.transmit.y, 0.6f);
+  EXPECT_LT(fibre.transmit.y, 1.0f);
+  EXPECT_LT(fibre.transmit.z, fibre.transmit.y);
+  EXPECT_EQ(fibre.transmit.w, 1);
+  look.forward = look.back = std::nullopt;
+  EXPECT_EQ(fibre_material(look).transmit.w, 0);
+}
+
 }  // namespace
 }  // namespace wale

@@ -164,6 +164,13 @@ TEST(SceneErrors, TwistThatInverts) {
             "s.json:3:21: materials.m.fibres.twist: -90 is out of range; valid: above -89, below 89");
 }
 
+TEST(SceneErrors, ColoursThatVaryOverNothing) {
+  EXPECT_TRUE(refused_ply("\"plies\": []")
+                  .ends_with("materials.m.plies: the list is empty; give one or more, or leave the "
+                             "key out"));
+  EXPECT_TRUE(refused_ply("\"stripes\": []").ends_with("or leave the key out"));
+}
+
 TEST(SceneErrors, FibresOutOfRange) {
   EXPECT_EQ(refused_ply("\"fibres\": {\"count\": 0}"),
             "s.json:3:21: materials.m.fibres.count: 0 is out of range; valid: 1 to 4096");
