@@ -161,7 +161,8 @@ class Checker {
 
   void check_list(const SchemaType& type, JsonNode& node, const std::string& path) const {
     need(node, Node::array, "a list", path);
-    if (node.items.size() < type.length) fail(node.place, path, "the list is empty; give one or more, or leave the key out");
+    if (node.items.size() < type.length)
+      fail(node.place, path, "the list is empty; give one or more, or leave the key out");
     for (size_t i = 0; i < node.items.size(); ++i) check(*type.item, node.items[i], joined(path, std::to_string(i)));
   }
 

@@ -9,6 +9,7 @@
 #include "sampling/sobol.clh"
 #include "stages/continue_path.clh"
 #include "stages/light_args.clh"
+#include "stages/load_hit.clh"
 #include "stages/path_state.clh"
 #include "stages/scene_args.clh"
 
@@ -28,17 +29,8 @@ __kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_P
   }
   const WScene scene = W_SCENE;
 
-  WRay ray;
-  ray.o = ray_o[slot].xyz;
-  ray.l = ray_l[slot].xyz;
-  ray.d = ray_d[slot].xyz;
-  const uint4 raw = hit[slot];
-  WHit h;
-  h.t = as_float(raw.x);
-  h.kind = raw.y;
-  h.code = raw.z;
-  h.u = hit_uv[slot].x;
-  h.v = hit_uv[slot].y;
+  const WRay ray = w_slot_ray(ray_o, ray_l, ray_d, slot);
+  const WHit h = w_slot_hit(hit, hit_uv, slot);
   const WPlySurface s = w_ply_surface(&scene, vertices, &ray, &h);
   WFibreMaterial material = materials[s.material & ~W_MATERIAL_FIBRE];
 #ifdef W_HAS_PLY_COLORS

@@ -1,5 +1,6 @@
-/* A path meets a ply (KNIT21 section 3.3): connect it to a light, go on along a lobe of the ply BSDF. A direction on the outer side of the surface leaves at the hit; any other one leaves from the middle of the
-   chord through the ply (docs/appearance.md), and meets whatever lies ahead, its own segment excepted. */
+/* A path meets a ply (KNIT21 section 3.3): connect it to a light, go on along a lobe of the ply BSDF. A direction on the
+   outer side of the surface leaves at the hit; any other one leaves from the middle of the chord through the ply
+   (docs/appearance.md), and meets whatever lies ahead, its own segment excepted. */
 #include "appearance/ply_bsdf.clh"
 #include "appearance/ply_color.clh"
 #include "geometry/ply_surface.clh"
@@ -8,6 +9,7 @@
 #include "sampling/sobol.clh"
 #include "stages/continue_path.clh"
 #include "stages/light_args.clh"
+#include "stages/load_hit.clh"
 #include "stages/path_state.clh"
 #include "stages/scene_args.clh"
 
@@ -44,17 +46,8 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
   const WLights lights = W_LIGHTS;
 #endif
 
-  WRay ray;
-  ray.o = ray_o[slot].xyz;
-  ray.l = ray_l[slot].xyz;
-  ray.d = ray_d[slot].xyz;
-  const uint4 raw = hit[slot];
-  WHit h;
-  h.t = as_float(raw.x);
-  h.kind = raw.y;
-  h.code = raw.z;
-  h.u = hit_uv[slot].x;
-  h.v = hit_uv[slot].y;
+  const WRay ray = w_slot_ray(ray_o, ray_l, ray_d, slot);
+  const WHit h = w_slot_hit(hit, hit_uv, slot);
   const WPlySurface s = w_ply_surface(&scene, vertices, &ray, &h);
   const float3 wv = -ray.d;
   const WPlyMaterial material = W_COLORED(materials[s.material], s.segment);
@@ -66,7 +59,8 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
     const int paper = detail.level == W_DETAIL_PAPER;
     const float2 phase = paper ? w_ellipse_phase(&s) : (float2)(s.cos_phi, s.sin_phi);
     const float width = pixel_width.x + pixel_width.y * h.t;
-    const float diameters = width / (2.0f * detail.fibre_radius * s.radius * fmax(sqrt(fmax(1.0f - s.h * s.h, 0.0f)), 0.05f));
+    const float facing = fmax(sqrt(fmax(1.0f - s.h * s.h, 0.0f)), 0.05f);
+    const float diameters = width / (2.0f * detail.fibre_radius * s.radius * facing);
     if (paper || diameters < 2.0f)
       fibre = w_fibre_at(detail, fibre_offsets, fibre_candidates, phase.x, phase.y, s.length);
     if (!paper) fibre = w_fibre_filtered(detail, fibre, diameters);
