@@ -70,7 +70,7 @@ double dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.
 ThickLayer::ThickLayer(const WPlyMaterial& m) {
   if (m.fibre.w != 0) bug("ThickLayer of a material with body colours");
   const double v_r = double(m.beta_r) * m.beta_r;
-  double total = 0, cosines = 0;
+  double total = 0;
   for (int i = 0; i < kOffsets; ++i) {
     const double h = 2 * (i + 0.5) / kOffsets - 1, c = std::sqrt(1 - h * h), k = 2 * h * c;
     const double v = m.v_e + (double(m.v_c) - m.v_e) * c;
@@ -102,14 +102,11 @@ ThickLayer::ThickLayer(const WPlyMaterial& m) {
       const double facing = cos_f > 1e-9 ? std::clamp(dot(n, wv) / cos_f, 0.0, 1.0) : 1;
       const double g_r = sin_f * sin_f * mean_sin_factor(v_r) - cos_f * mean_cos(sin_f, cos_f, v_r) * facing * kPi / 4;
       total += weight;
-      cosines += weight * (surface * g_r + (1 - surface) * (forward * g_f + (1 - forward) * g_b));
       const double hits = m.n0 + m.n1 * c;
       nodes_.push_back(
           {weight, surface, forward, fresnel, std::max(hits, 1.0), std::max(m.hits_back * hits, 1.0), g_r, g_f, g_b});
     }
   }
-  // A ply without fibres scatters nothing; any g does.
-  g_ = total > 0 ? std::clamp(cosines / total, -0.99, 0.99) : 0;
   for (Node& node : nodes_) node.weight = total > 0 ? node.weight / total : 1.0 / double(nodes_.size());
 }
 
@@ -119,15 +116,16 @@ ThickLayer::Scattered ThickLayer::scattered(double fibre) const {
   for (const Node& n : nodes_) {
     const double absorbed = (1 - n.fresnel) * (1 - fibre);
     const auto body = [&](double hits) { return (1 - absorbed) * std::pow(1 + 0.25 * (hits - 1) * absorbed, -4); };
-    const double f = (1 - n.surface) * n.forward * body(n.hits);
-    const double b = (1 - n.surface) * (1 - n.forward) * body(n.hits_back);
-    out.lost += n.weight * (1 - n.surface - f - b);
-    cosines += n.weight * (n.surface * n.cos_r + f * n.cos_f + b * n.cos_b);
+    const double enters = 1 - n.surface, f = body(n.hits), b = body(n.hits_back);
+    out.lost += n.weight * enters * (n.forward * (1 - f) + (1 - n.forward) * (1 - b));  // exactly 0 where white
+    cosines += n.weight * (n.surface * n.cos_r + enters * (n.forward * f * n.cos_f + (1 - n.forward) * b * n.cos_b));
   }
   // Of what is left: the surface's light, which turns back, is most of it where fibres are dark.
   out.cosine = out.lost < 1 ? std::clamp(cosines / (1 - out.lost), -0.99, 0.99) : 0;
   return out;
 }
+
+double ThickLayer::mean_cosine(double fibre) const { return scattered(fibre).cosine; }
 
 double ThickLayer::albedo(double fibre) const { return 1 - scattered(fibre).lost; }
 

@@ -18,7 +18,8 @@ class ThickLayer {
   /// `material` without its colour; one that gives body colours directly is a bug.
   explicit ThickLayer(const WPlyMaterial& material);
 
-  double mean_cosine() const { return g_; }
+  /// Mean cosine g of what is scattered at fibre colour C in [0,1].
+  double mean_cosine(double fibre) const;
   /// Albedo A at fibre colour C in [0,1]; 1 at 1.
   double albedo(double fibre) const;
   /// Colour R seen at fibre colour C in [0,1]: rises strictly, 1 at 1.
@@ -41,7 +42,6 @@ class ThickLayer {
     double cos_r, cos_f, cos_b;  ///< mean cosine between the ways in and out, per lobe
   };
   std::vector<Node> nodes_;
-  double g_ = 0;
 };
 
 }  // namespace wale

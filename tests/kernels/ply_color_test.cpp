@@ -102,7 +102,7 @@ TEST(ThickLayer, AveragesAreThoseOfTheKernels) {
     double cosine = 0;
     for (size_t i = 0; i < kCount; ++i)
       cosine -= glm::dot(dvec3(out[9 * i + 1], out[9 * i + 2], out[9 * i + 3]), unit(&in[9 * i + 6])) / kCount;
-    EXPECT_NEAR(ThickLayer(white).mean_cosine(), cosine, 0.006) << name;  // 3.5 standard errors of +-0.75
+    EXPECT_NEAR(ThickLayer(white).mean_cosine(1), cosine, 0.006) << name;  // 3.5 standard errors of +-0.75
 
     for (const double color : {0.0, 0.5, 0.9, 0.99}) {
       a.fibre_color = Rgb{color, color, color};
