@@ -6,6 +6,7 @@
 #include "host/atomic_file.h"
 #include "host/commands.h"
 #include "host/progress.h"
+#include "host/rare_events.h"
 #include "host/render.h"
 #include "host/stop.h"
 
@@ -54,10 +55,7 @@ Stats stats_of(const Scene& scene, const Device& device, const World& world, con
   s.rays["primary"] = {r.counts.primary, per_ray * double(r.counts.primary)};
   s.rays["bounce"] = {r.counts.bounce, per_ray * double(r.counts.bounce)};
   s.rays["shadow"] = {r.counts.shadow, seconds("connect")};
-  s.rare_events = {{"nan", r.counts.events[W_EVENT_NAN]},
-                   {"stack full", r.counts.events[W_EVENT_STACK_FULL]},
-                   {"depth limit", r.counts.events[W_EVENT_PATH_CAP]},
-                   {"energy above 1", r.counts.events[W_EVENT_ENERGY]}};
+  for (const RareEvent& e : kRareEvents) s.rare_events[e.name] = r.counts.events[e.counter];
   s.width = world.camera.width;
   s.height = world.camera.height;
   s.samples = r.counts.paths;
@@ -108,11 +106,12 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   if (!args.quiet)
     fmt::print(stderr, "{} samples per pixel in {}, {:.2f} Mrays/s\n", r.samples, duration_text(r.seconds),
                1e-6 * rays / r.seconds);
-  for (const auto& [name, count] : stats.rare_events)
-    if (count && name == "nan")
-      bug("render: {} samples were not finite; the picture was written without them", count);
-    else if (count && !args.quiet)
-      fmt::print(stderr, "warning: {}: {} times\n", name, count);
+  for (const RareEvent& e : kRareEvents)
+    if (const uint64_t count = r.counts.events[e.counter];
+        count && e.weight == RareEvent::Weight::warning && !args.quiet)
+      fmt::print(stderr, "warning: {}: {} times\n", e.name, count);
+  if (const uint64_t count = r.counts.events[W_EVENT_NAN])
+    bug("render: {} samples were not finite; the picture was written without them", count);
   return 0;
 }
 

@@ -201,10 +201,13 @@ typedef struct WFrame {
 } WFrame;
 
 /* Rare events, counted on the device: never hidden. */
-#define W_EVENT_NAN 0
-#define W_EVENT_STACK_FULL 1
-#define W_EVENT_PATH_CAP 2
-#define W_EVENT_ENERGY 3
+#define W_EVENT_NAN 0        /* sample that is not finite */
+#define W_EVENT_STACK_FULL 1 /* subtree left out, the traversal's stack was full */
+#define W_EVENT_PATH_CAP 2   /* path at its length limit */
+#define W_EVENT_ENERGY 3     /* scattering that would return more light than arrives */
+#define W_EVENT_RAY 4        /* ray whose origin or direction is not finite, or whose direction is not unit: a miss */
+#define W_EVENT_SPHERE 5     /* nearest hit on the sphere of a joint whose mitre does not fit, or of an open end */
+#define W_EVENT_PARALLEL 6   /* ray inside a ply's radius that runs along its axis: no entry through the side */
 #define W_EVENT_COUNT 8
 
 #ifndef __OPENCL_VERSION__

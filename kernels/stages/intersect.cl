@@ -22,6 +22,9 @@ __kernel void intersect(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, __global co
   const WHit h = w_closest(&scene, &ray);
   hit[slot] = (uint4)(as_uint(h.t), h.kind, h.code, 0u);
   hit_uv[slot] = (float2)(h.u, h.v);
+#ifdef W_HAS_PLIES
+  if (h.kind == W_HIT_PLY && h.v != (float)W_PIECE_SIDE) atomic_inc(events + W_EVENT_SPHERE);
+#endif
   uint bin = h.kind == W_HIT_NONE ? W_BIN_MISS : h.kind == W_HIT_PLY ? W_BIN_PLY : W_BIN_SURFACE;
 #ifdef W_HAS_FIBRES
   if (bin == W_BIN_PLY && (leaves[((size_t)(h.code >> 4) << 2) + W_LEAF_MATERIAL] & W_MATERIAL_FIBRE))

@@ -40,6 +40,9 @@ __kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_P
   const WFibreShade shade = w_fibre_setup(material, s.smooth_t, s.smooth_n, -ray.d);
   const float3 axis = s.u * s.edge;
 
+  // Within the rounding of the lobes' energies, 2e-6.
+  if (w_max3(shade.a[0] + shade.a[1]) > 1.00001f) atomic_inc(events + W_EVENT_ENERGY);
+
 #ifdef W_AOVS
   if (depth == 0) {
     __global float4* a = aov + (ulong)slot * 4;

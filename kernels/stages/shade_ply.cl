@@ -68,6 +68,9 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
 #endif
   const WPlyShade shade = w_ply_setup_detail(material, s.smooth_t, s.smooth_n, wv, fibre);
 
+  // Within the rounding of the lobes' energies, 2e-6.
+  if (w_max3(shade.a[0] + shade.a[1] + shade.a[2]) > 1.00001f) atomic_inc(events + W_EVENT_ENERGY);
+
 #ifdef W_AOVS
   if (depth == 0) {
     __global float4* a = aov + (ulong)slot * 4;
