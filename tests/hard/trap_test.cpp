@@ -33,12 +33,14 @@ TEST_P(HardCase, KeepsItsPromise) {
   EXPECT_GT(f.trials, 0u);
   ASSERT_FALSE(std::isnan(f.error_float)) << "nothing was measured";
   EXPECT_LE(f.error_float, trap.limit) << trap.unit << ", in float: " << trap.breaks;
-  if (!std::isnan(f.error_double)) EXPECT_LE(f.error_double, trap.limit) << trap.unit << ", in double";
+  if (!std::isnan(f.error_double)) {
+    EXPECT_LE(f.error_double, trap.limit) << trap.unit << ", in double";
+  }
   EXPECT_LE(double(f.rare), trap.rare_limit * double(f.trials)) << "rare events";
 }
 
 INSTANTIATE_TEST_SUITE_P(Traps, HardCase, ::testing::Range(size_t(0), traps().size()),
-                         [](const auto& info) { return test_name(traps()[info.param].name); });
+                         [](const auto& trap) { return test_name(traps()[trap.param].name); });
 
 // The document holds one row per trap with its promise and limit; the measured columns are those of the machine named
 // there.

@@ -51,7 +51,9 @@ void expect_furnace(const Case& c) {
     EXPECT_GT(p, sidak(0.01, tests)) << "seed " << seed;
     for (const double mean : mean_rgb(picture.image)) EXPECT_NEAR(mean, 1.0, 0.002) << "seed " << seed;
     for (const RareEvent& e : kRareEvents)
-      if (e.weight != RareEvent::Weight::note) EXPECT_EQ(picture.counts.events[e.counter], 0u) << e.name;
+      if (e.weight != RareEvent::Weight::note) {
+        EXPECT_EQ(picture.counts.events[e.counter], 0u) << e.name;
+      }
     EXPECT_GT(picture.counts.bounce, picture.counts.primary / 4) << "the fabric was not hit";
   }
 }
