@@ -127,7 +127,10 @@ OracleHit BruteForce::closest(const Ray& ray, long skip) const {
     const OracleSegment& s = segments_[i];
     const SegmentEntry<long double> entry = segment_entry<long double>(s, ray);
     if (!entry.hit() || entry.t > ray.tmax || entry.t > best.exact_t) continue;
-    if (left >= 0 && entry.t < 1e-4L * s.radius && joined(segments_[size_t(left)], s)) continue;
+    if (left >= 0 && joined(segments_[size_t(left)], s)) {
+      const long double t = entry.t / s.radius, steep = std::sqrt(std::max(0.0L, 1 - entry.h * entry.h));
+      if (t < 1e-4L || (t < 0.1L && t * steep < 1e-5L)) continue;
+    }
     if (passes(s, ray.key, double(entry.h))) continue;
     best.exact_t = entry.t;
     best.hit = true;

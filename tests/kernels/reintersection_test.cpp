@@ -9,6 +9,7 @@
 
 #include "geom/base_mesh_generators.h"
 #include "tests/kernels/fabric_tracer.h"
+#include "tests/kernels/joint_rays.h"
 #include "tests/kernels/parallel.h"
 
 namespace wale::test {
@@ -54,9 +55,15 @@ void leave(const char* name, BaseMesh mesh, int plies, size_t rays) {
   const FabricTracer tracer(test_device(), fabric);
   const BruteForce oracle(patches_of(fabric, -1), tracer.vertices());
   const double r = fabric.ply_radius;
+  const std::vector<JointPair> joints = joints_of(oracle);
   Tally tally;
   for (uint32_t round = 0; tally.rays < rays; ++round) {
-    const std::vector<Ray> primary = primary_rays(tracer.bounds(), std::min(kPrimary, 2 * rays), 100 + round);
+    // Every other one starts at a joint, where a neighbour is at hand.
+    std::vector<Ray> primary = primary_rays(tracer.bounds(), std::min(kPrimary, 2 * rays), 100 + round);
+    for (size_t i = 0; i < primary.size(); i += 2) {
+      Stream random{(uint64_t(round) << 32 | i) * 0xd1342543de82ef95ull};
+      primary[i] = ray_at(oracle, joints[random.next() % joints.size()], random);
+    }
     const std::vector<Hit> first = tracer.trace(primary);
     std::vector<Ray> out = bounce_rays(primary, first, tracer.surfaces(primary, first), round);
     out.resize(std::min(out.size(), rays - tally.rays));
