@@ -14,6 +14,11 @@ constexpr double kSurfaceFloat = 1e-3;   // float against double: D of the sharp
 constexpr double kSurfaceFurnace = 0.01;
 constexpr double kReciprocity = 2e-5;  // float rounding of the coat's D at its sharpest tested roughness
 
+// Intersection, in ply radii, from 10 to 1e6 radii away.
+constexpr double kOffSurfaceFloat = 1e-6;  // the point is set back on its surface: a few roundings of 2^-24
+constexpr double kPointFloat = 1e-4;       // what is promised; where |h| < 0.99 and the ray does not run along the axis
+constexpr double kPointDouble = 1e-9;      // the vertices' coordinates in double, 1e-16 of 1e6 radii
+
 // Lights.
 constexpr double kFormFactor = 2e-3;  // mean of 2^18 stratified samples against closed forms
 constexpr double kDensityFloat = 2e-4;
