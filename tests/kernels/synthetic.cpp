@@ -266,7 +266,8 @@ uint32_t Tracer::segment(uint32_t code) const {
   return leaf[W_LEAF_SEGMENT] + lane % n * leaf[W_LEAF_STRIDE] + lane / n;
 }
 
-uint32_t Tracer::stack_overflows() const { return counters_.read(device_)[W_EVENT_STACK_FULL]; }
+uint32_t Tracer::stack_overflows() const { return events()[W_EVENT_STACK_FULL]; }
+std::vector<uint32_t> Tracer::events() const { return counters_.read(device_); }
 
 Ray make_ray(dvec3 origin, dvec3 direction, uint32_t key) {
   Ray ray;

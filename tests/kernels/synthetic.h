@@ -60,6 +60,8 @@ class Tracer {
   /// Id of the segment behind a hit code.
   uint32_t segment(uint32_t code) const;
   uint32_t stack_overflows() const;
+  /// All rare events so far, W_EVENT_COUNT of them.
+  std::vector<uint32_t> events() const;
   const PlyTree& tree() const { return tree_; }
   const Buffer<float>& vertices() const { return vertices_; }
 
