@@ -35,6 +35,15 @@ void write_header(const PlyPatch& patch, uint32_t* leaf) {
       (open && patch.first == 0 ? 1u : 0u) | (open && patch.first + patch.intervals + 1 == patch.count ? 2u : 0u);
 }
 
+void refuse_if_too_far(const PlyPatch& patch, const Box& box) {
+  for (int k = 0; k < 3; ++k)
+    if (!(box.lo[k] >= -kLargestCoordinate && box.hi[k] <= kLargestCoordinate && patch.radius <= kLargestCoordinate))
+      user_error(
+          "fabric {}: a ply of radius {:.3g} m reaches from {:.3g} to {:.3g} m; {:.0e} m from the middle of the "
+          "scene is the most that can be traced, in finite numbers: scale the scene down",
+          patch.fabric, patch.radius, box.lo[k], box.hi[k], kLargestCoordinate);
+}
+
 }  // namespace
 
 PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, const Buffer<float>& vertices,
@@ -77,6 +86,7 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
     for (size_t i = 0; i < boxes.size(); ++i) {
       std::copy_n(flat.begin() + 6 * i, 3, boxes[i].lo);
       std::copy_n(flat.begin() + 6 * i + 3, 3, boxes[i].hi);
+      refuse_if_too_far(patches[i], boxes[i]);
       for (int k = 0; k < 3; ++k) {
         tree.bounds.lo[k] = std::min(tree.bounds.lo[k], boxes[i].lo[k]);
         tree.bounds.hi[k] = std::max(tree.bounds.hi[k], boxes[i].hi[k]);
