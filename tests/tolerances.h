@@ -18,6 +18,10 @@ constexpr double kReciprocity = 2e-5;  // float rounding of the coat's D at its 
 constexpr double kFormFactor = 2e-3;  // mean of 2^18 stratified samples against closed forms
 constexpr double kDensityFloat = 2e-4;
 
+// Hard cases.
+constexpr double kFurnacePicture = 0.005;  // mean of a white furnace of 1e5 paths: four standard errors
+constexpr double kGrazingShare = 1e-3;     // rays within 1e-3 of a silhouette, |h| > 0.999, that float may decide otherwise
+
 // Statistics: a family of tests fails by chance once in a hundred times, and the seeds are fixed.
 constexpr double kFamilyP = 0.01;
 
