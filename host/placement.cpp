@@ -16,6 +16,17 @@ void refuse_if_out_of_reach(const BaseMesh& mesh, const std::string& name) {
                      name, v + 1, mesh.position[v][axis], kFarthestVertex);
 }
 
+void refuse_if_pixels_are_rounded(const WCamera& camera, double distance) {
+  const bool orthographic = camera.kind == 1;
+  const double pixel = 2.0 * camera.half_height / camera.height * (orthographic ? 1.0 : distance);
+  const double rounding = std::ldexp(distance, -24);
+  if (!(rounding <= pixel))
+    user_error(
+        "camera: it stands {:.3g} m from the middle of the scene, where floats round by {:.2g} m and its pixels are "
+        "{:.2g} m wide; {}, or give fewer pixels",
+        distance, rounding, pixel, orthographic ? "move it closer" : "widen its angle of view");
+}
+
 void refuse_if_rounded(const Fabric& fabric, dvec3 origin) {
   double thinnest = INFINITY, farthest = 0;
   for (const PlyRun& run : fabric.runs) thinnest = std::min(thinnest, double(run.radius));

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "geom/fabric.h"
+#include "shared/wale_types.h"
 
 namespace wale {
 
@@ -10,6 +11,10 @@ constexpr double kFarthestVertex = 1e9;
 
 /// Largest rounding of a vertex in float, ply radii, at which cloth is still traced: beyond it plies are lumps.
 constexpr double kCoarsestRounding = 0.125;
+
+/// Throws a user error when the rays of a camera `distance` metres from the middle of what it sees round by more than a
+/// pixel there.
+void refuse_if_pixels_are_rounded(const WCamera& camera, double distance);
 
 /// Throws a user error when a vertex that a triangle uses is not finite or lies beyond kFarthestVertex.
 void refuse_if_out_of_reach(const BaseMesh& mesh, const std::string& name);

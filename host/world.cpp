@@ -322,7 +322,9 @@ class Builder {
     const CameraScene seen =
         scene_.camera_given ? scene_.camera
                             : framed_camera(scene_.camera, scene_.film, b.empty() ? dvec3(0) : b.centre(), b.radius());
-    return device_camera(seen, scene_.film, world_.origin);
+    const WCamera made = device_camera(seen, scene_.film, world_.origin);
+    refuse_if_pixels_are_rounded(made, glm::length(seen.position - world_.origin));
+    return made;
   }
 
   struct Sphere {

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "tests/hard/fixtures_meshes.h"
 #include "tests/hard/fixtures_scenes.h"
 #include "tests/hard/look_fabric.h"
@@ -54,6 +56,22 @@ Trap trap_of(const MeshTrap& trap) {
 }
 
 std::string expect(bool good, const std::string& what) { return good ? "" : " " + what; }
+
+/// Ply vertices on the cloth whose interpolated normal is more than 45 degrees off their triangle's plane, or gone.
+std::string lost_normals(const World& world) {
+  const Fabric& fabric = world.fabrics[0];
+  const BaseMesh& mesh = fabric.mesh;
+  size_t lost = 0;
+  for (const Anchor& a : fabric.anchors) {
+    const double b0 = 1.0 - a.b1 - a.b2, b1 = a.b1, b2 = a.b2;
+    if (std::min({b0, b1, b2}) < 0) continue;
+    const auto& t = mesh.triangle[a.triangle];
+    const dvec3 n = b0 * mesh.normal[t[0]] + b1 * mesh.normal[t[1]] + b2 * mesh.normal[t[2]];
+    const dvec3 face = glm::cross(mesh.position[t[1]] - mesh.position[t[0]], mesh.position[t[2]] - mesh.position[t[0]]);
+    lost += !(glm::dot(n, face) > 0.7 * glm::length(face));
+  }
+  return expect(lost == 0, fmt::format("{} of {} vertices have no normal", lost, fabric.anchors.size()));
+}
 
 const MeshReport& report_of(const World& world) { return world.fabric_mesh_reports[0]; }
 
@@ -111,7 +129,8 @@ std::vector<MeshTrap> list() {
        kWhite,
        moebius_strip(),
        0.024,
-       {{dvec3(0.008, 0, 0), dvec3(0, 0, -1)}}},
+       {{dvec3(0.008, 0, 0), dvec3(0, 0, -1)}},
+       lost_normals},
       {"double sheet", "coincident cloths hit each other where a path starts", kWhite, double_sheet(), 0.008, middle},
       {"three sheets on an edge",
        "an edge with three sides has no other side",
@@ -119,7 +138,9 @@ std::vector<MeshTrap> list() {
        three_sheets_on_an_edge(),
        0.008,
        {},
-       [](const World& w) { return expect(report_of(w).non_manifold_edges > 0, "the report hides the edge"); }},
+       [](const World& w) {
+         return lost_normals(w) + expect(report_of(w).non_manifold_edges > 0, "the report hides the edge");
+       }},
       {"loose triangles", "every triangle is a chart of its own, and frays", kWhite, sheet_of_loose_triangles(), 0.008,
        middle},
       {"stray vertex", "a vertex that no face uses moves the origin and takes the cloth's digits", kWhite,
