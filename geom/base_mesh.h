@@ -27,6 +27,7 @@ struct MeshReport {
   size_t zero_area_uv = 0;          ///< zero area in UV: kept, never knitted
   size_t flipped_uv = 0;            ///< against the majority of their chart
   double overlap = 0;               ///< share of the covered UV area that is covered more than once
+  double chart_overlap = 0;         ///< the same within single charts, weighted by area: what stays bare
   dvec2 stretch_median{0, 0};       ///< singular values of UV -> space
 };
 

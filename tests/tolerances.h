@@ -31,6 +31,15 @@ constexpr double kFurnaceMean = 0.005;  // three standard errors of a picture of
 constexpr double kFormFactor = 2e-3;  // mean of 2^18 stratified samples against closed forms
 constexpr double kDensityFloat = 2e-4;
 
+// Hard cases.
+constexpr double kFurnacePicture = 0.005;  // mean of a white furnace of 1e5 paths: four standard errors
+constexpr double kFurnaceSmall = 0.02;     // the same of 1e4 paths
+constexpr double kProportional = 1e-5;     // sums of 64 floats in another order of magnitude
+constexpr double kStandardErrors = 4;      // of one statistic: by chance once in 16000 times
+constexpr double kLessThanNoise = 1;       // the promise itself
+constexpr double kPixelsOfAnotherScale = 0.01;
+constexpr double kGrazingShare = 1e-3;     // rays within 1e-3 of a silhouette, |h| > 0.999, that float may decide otherwise
+
 // Statistics: a family of tests fails by chance once in a hundred times, and the seeds are fixed.
 constexpr double kFamilyP = 0.01;
 
