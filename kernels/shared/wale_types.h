@@ -207,7 +207,7 @@ typedef struct WFrame {
 #define W_EVENT_ENERGY 3     /* scattering that would return more light than arrives */
 #define W_EVENT_RAY 4        /* ray whose origin or direction is not finite, or whose direction is not unit: a miss */
 #define W_EVENT_SPHERE 5     /* nearest hit on the sphere of a joint whose mitre does not fit, or of an open end */
-#define W_EVENT_PARALLEL 6   /* ray inside a ply's radius that runs along its axis: no entry through the side */
+#define W_EVENT_PARALLEL 6   /* ply segment that a ray ran along inside its radius: no entry through the side */
 #define W_EVENT_COUNT 8
 
 #ifndef __OPENCL_VERSION__
