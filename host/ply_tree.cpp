@@ -95,8 +95,9 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
   }
   tree.pack_seconds = now() - start;
 
-  std::vector<uint32_t> cells(patches.size());
-  for (size_t i = 0; i < patches.size(); ++i) cells[i] = patches[i].cell;
+  std::vector<uint32_t> cells;
+  if (!group_box.empty())
+    for (const PlyPatch& patch : patches) cells.push_back(patch.cell);
   const WideTree wide = build_wide_tree(boxes, tree.leaf_offset, cells, group_box);
   tree.nodes = Buffer<uint32_t>(device, wide.words);
   tree.node_cell = Buffer<uint32_t>(device, wide.node_cell);

@@ -169,7 +169,7 @@ Finding zero_components() {
 }
 
 Trap ray_trap(std::string name, std::string breaks, std::string promise, std::function<Finding()> look) {
-  return {std::move(name), std::move(breaks), std::move(promise), "ply radii", tolerance::kOffSurface, 0,
+  return {std::move(name), std::move(breaks), std::move(promise), "ply radii", tolerance::kPointFloat, 0,
           std::move(look)};
 }
 
@@ -201,6 +201,9 @@ std::vector<Trap> ray_traps() {
                "every ply that holds the origin is ignored and every other met",
                [] { return start_inside(overlapping_plies(), 13); }),
       afar("origin 10 radii away", 10),
+      afar("origin 1e3 radii away", 1e3),
+      afar("origin 1e5 radii away", 1e5),
+      afar("origin 1e6 radii away", 1e6),
       ray_trap("direction with zero components", "a slab's plane over zero is infinite, and times zero NaN",
                "zeros of either sign and denormals are the same direction", zero_components),
   };
