@@ -16,10 +16,10 @@ struct RayCase {
   std::vector<Ray> rays;
 };
 
-/// Traces the rays of all cases and compares with the oracle, which has the same float inputs. Errors are the largest
-/// of, in ply radii: distance of the hit from the ply's true surface; distance of the hit from the ray; and where the
-/// ray crosses the surface steeply, of t beyond the rounding of t itself. `broken` names the first ray whose answer
-/// (hit, miss, which segment) is wrong although neither a silhouette nor a joint's edge is near.
+/// Traces the rays of all cases, in float and in double, and compares with the oracle, which has the same float inputs.
+/// Errors are the largest of, in ply radii: distance of the hit from the ply's true surface; distance of the hit from
+/// the ray; and where the ray crosses the surface steeply, of t beyond the rounding of t itself. `broken` names the
+/// first ray whose answer (hit, miss, which segment) is wrong although neither a silhouette nor a joint's edge is near.
 Finding look_at_rays(const std::vector<RayCase>& cases);
 
 /// The same for one set of plies seen from several places: rays aimed from 8 radii, and what leaves their hits.

@@ -10,9 +10,38 @@ namespace {
 constexpr const char* kSamePlace = "every hit lies on the ply's true surface and on its ray, and no ray slips through";
 
 Trap shape(std::string name, std::string breaks, HardCurve (*curve)()) {
-  return {std::move(name), std::move(breaks), kSamePlace, "ply radii", tolerance::kOffSurface, 0, [curve] {
+  return {std::move(name), std::move(breaks), kSamePlace, "ply radii", tolerance::kPointFloat, 0, [curve] {
             return look_at_curve(strands_of(curve()), 11);
           }};
+}
+
+/// Helix and fold with plies of this radius in metres.
+Finding of_size(double radius) {
+  Finding f;
+  for (const Strands& s : {strands_of(helix_curve(), radius), strands_of(fold(), radius)})
+    f = worse(f, look_at_curve(s, 17));
+  return f;
+}
+
+Trap size(std::string name, double radius) {
+  return {std::move(name),
+          "products of three lengths leave the range of a float: 0, denormal or infinite",
+          kSamePlace,
+          "ply radii",
+          tolerance::kPointFloat,
+          0,
+          [radius] { return of_size(radius); }};
+}
+
+/// From the middle of a yarn of three plies, along and across it: every ray starts between plies or in one.
+Finding camera_inside() {
+  const double r = 1e-3;
+  Scene scene = empty_scene(r, 24);
+  scene.camera.position = dvec3(0, r, 0);  // the axis of a row; the film covers the yarn's upper half
+  scene.camera.look_at = dvec3(0, r, -1);
+  add_fabric(scene, tile_of(straight(3, 4), r), 0.05, 0.05, 3, "wool", Rgb{1, 1, 1});
+  scene.lights.push_back(constant_environment(1));
+  return look_at_furnace(scene, 256);
 }
 
 /// A tile in a white furnace, seen by 24 x 24 pixels over two of its periods.
@@ -49,7 +78,7 @@ Trap far(std::string name, double radii) {
           "a world coordinate there is rounded to a good part of a ply, and a hit computed in it jumps off the surface",
           "the ply that the rounded vertices describe is met as exactly as one at the origin",
           "ply radii",
-          tolerance::kOffSurface,
+          tolerance::kPointFloat,
           0,
           [radii] { return far_place(radii); }};
 }
@@ -82,6 +111,17 @@ std::vector<Trap> curve_traps() {
       far("ply 1e3 radii from the origin", 1e3),
       far("ply 1e5 radii from the origin", 1e5),
       far("ply 1e7 radii from the origin", 1e7),
+      size("ply of 1e-10 m radius", 1e-10),
+      size("ply of 1e9 m radius", 1e9),
+      {"camera inside a ply", "the first ray starts behind the surface that it should enter",
+       "in a white furnace every pixel is 1 within its noise; no sample is lost or not finite", "of the picture's mean",
+       tolerance::kFurnaceMean, 0, camera_inside},
+      tile(
+          "tile that bends tighter than its yarn", "plies on the inside of the bend run backwards",
+          [r] {
+            return tile_of(HardCurve{{{{0, 0, 0}, {0.4, 2, 0}, {0.8, 0, 0.2}, {1.2, 2, 0}, {1.6, 0, 0}}}}, r);
+          },
+          3),
       tile(
           "tile of one segment", "nothing bends, and both ends join the neighbouring tiles",
           [r] { return tile_of(straight(1, 8), r); }, 1),

@@ -39,6 +39,37 @@ Finding along_the_axis() {
   return look_at_rays({c});
 }
 
+/// Rays that creep into 200 radii of straight ply at angles below the one from which sides count: how deep those go
+/// that the device does not stop, per length of the way along the ply.
+Finding creeping_in() {
+  constexpr double kLength = 200;
+  const Strands strands = strands_of(straight(50, kLength / 50));
+  Dice dice(14);
+  std::vector<Ray> rays;
+  std::vector<double> depth;
+  for (int n = 0; n < 20000; ++n) {
+    const double angle = std::pow(10, dice.uniform(-6, -2.5)), turn = dice.uniform(0, 2 * pi);
+    const dvec3 out(0, std::cos(turn), std::sin(turn));
+    // Enters the surface at x = at, aimed at the axis.
+    const double at = dice.uniform(0, kLength);
+    const dvec3 d(std::cos(angle), -std::sin(angle) * out.y, -std::sin(angle) * out.z);
+    rays.push_back(make_ray(dvec3(at, 0, 0) + out - 1e-2 / std::sin(angle) * d, d, uint32_t(n)));
+    depth.push_back(std::tan(angle) * (kLength - at));
+  }
+  Tracer tracer(test_device(), strands);
+  const std::vector<Hit> hits = tracer.trace(rays, "-DW_LANES=16");
+  Finding f;
+  f.error_float = 0;
+  f.trials = rays.size();
+  size_t stopped = 0;
+  for (size_t n = 0; n < rays.size(); ++n) {
+    stopped += hits[n].kind == W_HIT_PLY;
+    if (hits[n].kind != W_HIT_PLY) f.error_float = std::max(f.error_float, depth[n] / kLength);
+  }
+  if (stopped < rays.size() / 10) f.broken = "steeper rays are not stopped either";
+  return f;
+}
+
 Finding through_the_axis() {
   RayCase c{strands_of(helix_curve()), {}};
   Dice dice(2);
@@ -169,7 +200,7 @@ Finding zero_components() {
 }
 
 Trap ray_trap(std::string name, std::string breaks, std::string promise, std::function<Finding()> look) {
-  return {std::move(name), std::move(breaks), std::move(promise), "ply radii", tolerance::kOffSurface, 0,
+  return {std::move(name), std::move(breaks), std::move(promise), "ply radii", tolerance::kPointFloat, 0,
           std::move(look)};
 }
 
@@ -186,6 +217,9 @@ std::vector<Trap> ray_traps() {
       ray_trap(
           "ray parallel to the axis", "the quadratic's first coefficient is 0, or the rounding of 0, and t is anything",
           "up to 1e-3 rad a segment's side is missed and the next bend or cap is met; nothing is NaN", along_the_axis),
+      {"ray that creeps in along the axis", "at a flat angle rounding decides where the ray enters, if at all",
+       "one below 1e-3 rad may go in unseen: no deeper than 1e-3 of its way along the straight ply",
+       "radii of depth per radius of way", tolerance::kCreepDepth, 0, creeping_in},
       ray_trap("ray through the axis", "the offset h is 0 and its sign and normal come from rounding",
                "hits of the axis and of its vertices from all directions are on the surface", through_the_axis),
       ray_trap("ray along a mitre plane", "both segments' clips reject the same entry and the ray leaks into the ply",
@@ -201,6 +235,9 @@ std::vector<Trap> ray_traps() {
                "every ply that holds the origin is ignored and every other met",
                [] { return start_inside(overlapping_plies(), 13); }),
       afar("origin 10 radii away", 10),
+      afar("origin 1e3 radii away", 1e3),
+      afar("origin 1e5 radii away", 1e5),
+      afar("origin 1e6 radii away", 1e6),
       ray_trap("direction with zero components", "a slab's plane over zero is infinite, and times zero NaN",
                "zeros of either sign and denormals are the same direction", zero_components),
   };

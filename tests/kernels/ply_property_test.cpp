@@ -79,11 +79,11 @@ TEST(PlyProperty, RaysThatLeaveOutwardNeverComeBackToTheirSegment) {
       const OracleHit expected = oracle.closest(outward[i], start);
       if (again[i].kind != W_HIT_PLY) {
         RC_ASSERT(!expected.hit || std::abs(expected.h) > 0.99 || expected.edge < 1e-3 ||
-                  expected.t < 2 * tolerance::kOffSurface * radius);
+                  expected.t < 2 * tolerance::kPointFloat * radius);
         continue;
       }
       RC_ASSERT(long(tracer.segment(again[i].code)) != start);
-      RC_ASSERT(expected.hit || std::abs(again[i].u) > 0.99 || again[i].t < 2 * tolerance::kOffSurface * radius);
+      RC_ASSERT(expected.hit || std::abs(again[i].u) > 0.99 || again[i].t < 2 * tolerance::kPointFloat * radius);
     }
   });
 }
