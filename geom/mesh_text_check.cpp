@@ -1,6 +1,8 @@
 #include "geom/mesh_text_check.h"
 
 #include <charconv>
+#include <cmath>
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -46,9 +48,22 @@ class Lines {
     return value;
   }
   void numbers(size_t count, const char* what) {
-    for (size_t i = 0; i < count; ++i)
-      if (word().empty())
+    for (size_t i = 0; i < count; ++i) {
+      std::string_view text = word();
+      if (text.empty())
         user_error("{}:{}: {} of {} numbers has only {}; the file is not whole", file_, number_, what, count, i);
+      const std::string_view shown = text.substr(0, 20);
+      if (text.front() == '+') text.remove_prefix(1);
+      double value = 0;
+      const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+      const bool too_small = error == std::errc::result_out_of_range && text.find("e-") != std::string_view::npos;
+      if ((error != std::errc{} && !too_small && error != std::errc::result_out_of_range) ||
+          rest != text.data() + text.size())
+        user_error("{}:{}: {}: '{}' is not a number", file_, number_, what, shown);
+      // OpenMesh reads floats, and from the first one that it cannot hold it reads zeros.
+      if (!too_small && (error != std::errc{} || !(std::abs(value) <= std::numeric_limits<float>::max())))
+        user_error("{}:{}: {}: '{}' is not a finite number of single precision", file_, number_, what, shown);
+    }
   }
   void element(const char* what, size_t i, size_t count, char comment = '\0') {
     if (!next(comment))

@@ -5,13 +5,12 @@
 #include <numbers>
 
 #include "geom/error.h"
+#include "shared/ply_shape.h"
 
 namespace wale {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-// W_BODY_LEAN, W_BODY_LEAN_DECAY, W_BODY_GRAZE, W_FORWARD_LEAST and W_FORWARD_SKEW of ply_bsdf.clh.
-constexpr double kLean = 0.75, kLeanDecay = 2.25, kGraze = 3.5, kForwardLeast = 0.25, kForwardSkew = 0.35;
 constexpr int kOffsets = 32, kAngles = 24, kTilts = 12, kTurns = 12;
 
 /// Mean of cos th_o under the longitudinal lobe of variance v about th_i, by its exact sampling (d'Eon 2013) at the
@@ -74,9 +73,9 @@ ThickLayer::ThickLayer(const WPlyMaterial& m) {
   for (int i = 0; i < kOffsets; ++i) {
     const double h = 2 * (i + 0.5) / kOffsets - 1, c = std::sqrt(1 - h * h), k = 2 * h * c;
     const double v = m.v_e + (double(m.v_c) - m.v_e) * c;
-    const double s_f = m.s_f0 * std::pow(c, double(m.e_f)) + kForwardLeast;
+    const double s_f = m.s_f0 * std::pow(c, double(m.e_f)) + W_FORWARD_LEAST;
     const double forward_cos =
-        mean_cos_logistic(kPi - m.d_f * k, s_f * (1 - kForwardSkew * h), s_f * (1 + kForwardSkew * h));
+        mean_cos_logistic(kPi - m.d_f * k, s_f * (1 - W_FORWARD_SKEW * h), s_f * (1 + W_FORWARD_SKEW * h));
     const double back_cos = mean_cos_logistic(std::asin(h) + m.d_b * k, m.s_b, m.s_b);
     const double length_tf = std::sqrt(1 + double(m.tilt) * m.tilt);
     const Vector n{c, h, 0}, tf{-m.tilt * h / length_tf, m.tilt * c / length_tf, 1 / length_tf};
@@ -91,9 +90,9 @@ ThickLayer::ThickLayer(const WPlyMaterial& m) {
 
       // Cosine between the way in, -wv, and the mean way out, per lobe. In the frame of a lobe's axis wv = (cos, 0,
       // sin).
-      const double towards = std::clamp(kLeanDecay * m.tilt * h * sin_v, -3.0, 3.0);
-      const double forward = std::exp(-m.b * (1 + kGraze * std::pow(1 - cos_v, 2)) * std::exp(towards) * c);
-      const double theta_b = theta - std::atan(kLean * m.tilt * h), sin_b = std::sin(theta_b);
+      const double towards = std::clamp(W_BODY_LEAN_DECAY * m.tilt * h * sin_v, -3.0, 3.0);
+      const double forward = std::exp(-m.b * (1 + W_BODY_GRAZE * std::pow(1 - cos_v, 2)) * std::exp(towards) * c);
+      const double theta_b = theta - std::atan(W_BODY_LEAN * m.tilt * h), sin_b = std::sin(theta_b);
       const double cos_b = std::abs(std::cos(theta_b));
       const double body_cos = mean_cos(sin_b, cos_b, v), body_sin = sin_b * sin_b * mean_sin_factor(v);
       const double g_f = body_sin - cos_b * body_cos * forward_cos;

@@ -14,6 +14,19 @@ constexpr double kSurfaceFloat = 1e-3;   // float against double: D of the sharp
 constexpr double kSurfaceFurnace = 0.01;
 constexpr double kReciprocity = 2e-5;  // float rounding of the coat's D at its sharpest tested roughness
 
+// Intersection, in ply radii, from 10 to 1e6 radii away.
+constexpr double kOffSurfaceFloat = 1e-6;  // the point is set back on its surface: a few roundings of 2^-24
+constexpr double kPointFloat = 1e-4;       // what is promised; where |h| < 0.99 and the ray does not run along the axis
+constexpr double kPointDouble = 1e-9;      // the vertices' coordinates in double, 1e-16 of 1e6 radii
+
+// Geometry: what a hit may be off, in ply radii, whatever the scene. A tenth of the thinnest fibre's detail, and as much
+// as a neighbouring segment's own start distance.
+constexpr double kOffSurface = 1e-4;
+constexpr double kWildRayTime = 2.5;      // NaN and infinite rays over sound ones
+constexpr double kAcrossJoint = 5e-3;    // two rays 1e-3 radii on both sides of a joint; a ply's frame turns by less than 2/r
+constexpr double kMoved = 1e-4;          // radii: rounding of coordinates a few hundred radii from the origin
+constexpr double kFurnaceMean = 0.005;  // three standard errors of a picture of 24 x 24 pixels and 256 samples
+
 // Lights.
 constexpr double kFormFactor = 2e-3;  // mean of 2^18 stratified samples against closed forms
 constexpr double kDensityFloat = 2e-4;

@@ -1,4 +1,5 @@
 #include "bench/goniometer/ply_model.h"
+#include "shared/ply_shape.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +10,6 @@ namespace wale {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-// The kernel's W_BODY_* and W_FORWARD_*.
-constexpr double kLean = 0.75, kLeanDecay = 2.25, kGraze = 3.5, kForwardLeast = 0.25, kForwardSkew = 0.35;
 
 double chord(double h) { return std::sqrt(std::max(0.0, 1 - h * h)); }
 
@@ -84,8 +82,8 @@ double ply_surface_share(const PlyParameters& p, double theta, double h) {
 }
 
 LobeAzimuths ply_lobe_azimuths(const PlyParameters& p, double h) {
-  const double c = chord(h), k = 2 * h * c, s_f = p.s_f0 * std::pow(std::max(c, 1e-9), p.e_f) + kForwardLeast;
-  const Lobe f(kPi - p.d_f * k, s_f * (1 - kForwardSkew * h), s_f * (1 + kForwardSkew * h));
+  const double c = chord(h), k = 2 * h * c, s_f = p.s_f0 * std::pow(std::max(c, 1e-9), p.e_f) + W_FORWARD_LEAST;
+  const Lobe f(kPi - p.d_f * k, s_f * (1 - W_FORWARD_SKEW * h), s_f * (1 + W_FORWARD_SKEW * h));
   const Lobe b(std::asin(h) + p.d_b * k, p.s_b, p.s_b);
   LobeAzimuths out;
   double f_before = f.until(-kPi), b_before = b.until(-kPi);
@@ -100,14 +98,14 @@ LobeAzimuths ply_lobe_azimuths(const PlyParameters& p, double h) {
 
 double ply_forward_weight(const PlyParameters& p, double theta, double h) {
   const double graze = 1 - std::cos(theta);
-  const double towards = std::clamp(kLeanDecay * p.twist * h * std::sin(theta), -3.0, 3.0);
-  return std::exp(-p.b * (1 + kGraze * graze * graze) * std::exp(towards) * chord(h));
+  const double towards = std::clamp(W_BODY_LEAN_DECAY * p.twist * h * std::sin(theta), -3.0, 3.0);
+  return std::exp(-p.b * (1 + W_BODY_GRAZE * graze * graze) * std::exp(towards) * chord(h));
 }
 
 BodyTurn::BodyTurn(const PlyParameters& p, double theta, double h) {
   const double v = p.v_e + (p.v_c - p.v_e) * chord(h);
   // The body's axis lies in the plane of t and the light: tilted by `lean` towards the light where positive.
-  const double lean = -std::atan(kLean * p.twist * h), theta_b = theta + lean;
+  const double lean = -std::atan(W_BODY_LEAN * p.twist * h), theta_b = theta + lean;
   constexpr int kAlong = kFineBins;
   std::array<double, kAlong> m{};
   double sum = 0;

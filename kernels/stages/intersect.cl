@@ -1,5 +1,6 @@
 /* Nearest hit of every live path: global stage down the tree over cells, local stage on their plies. */
 #include "geometry/traverse.clh"
+#include "stages/load_hit.clh"
 #include "stages/path_state.clh"
 #include "stages/scene_args.clh"
 #include "sampling/dimensions.clh"
@@ -10,15 +11,9 @@ __kernel void intersect(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, __global co
   if (i >= counts[count_index]) return;
   const uint slot = list[i];
   const WScene scene = W_SCENE;
-  const float4 o = ray_o[slot], l = ray_l[slot], d = ray_d[slot];
-  WRay ray;
-  ray.o = o.xyz;
-  ray.l = l.xyz;
-  ray.d = d.xyz;
+  WRay ray = w_slot_ray(ray_o, ray_l, ray_d, slot);
   ray.tmax = 1e30f;
   ray.key = w_ray_key(w_slot_pixel(&frame, slot), w_slot_sample(&frame, slot), depth, W_RAY_PATH, frame.seed);
-  ray.skip = as_uint(l.w);
-  ray.skip_triangle = as_uint(o.w);
   const WHit h = w_closest(&scene, &ray);
   hit[slot] = (uint4)(as_uint(h.t), h.kind, h.code, 0u);
   hit_uv[slot] = (float2)(h.u, h.v);

@@ -12,6 +12,7 @@
 #include "stages/load_hit.clh"
 #include "stages/path_state.clh"
 #include "stages/scene_args.clh"
+#include "stages/store_rays.clh"
 
 __kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PARAMS, __global const float* vertices,
                           __global const WFibreMaterial* materials,
@@ -44,13 +45,9 @@ __kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_P
   if (w_max3(shade.a[0] + shade.a[1]) > 1.00001f) atomic_inc(events + W_EVENT_ENERGY);
 
 #ifdef W_AOVS
-  if (depth == 0) {
-    __global float4* a = aov + (ulong)slot * 4;
-    a[0] = (float4)(shade.a[0] + shade.a[1], h.t);
-    a[1] = (float4)(s.smooth_n, s.phi);
-    a[2] = (float4)(s.smooth_t, s.length);
-    a[3] = (float4)(s.anchor + s.x, as_float(s.ply));
-  }
+  if (depth == 0)
+    W_STORE_FEATURES(slot, shade.a[0] + shade.a[1], h.t, s.smooth_n, s.phi, s.smooth_t, s.length,
+                     s.anchor + s.x, s.ply)
 #endif
 
   const WSampler sampler = w_sampler(w_slot_pixel(&frame, slot), w_slot_sample(&frame, slot), frame.seed);
@@ -70,10 +67,7 @@ __kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_P
       const float3 c = weight[slot].xyz * f * l.radiance * (share / l.pdf);
       if (w_max3(c) > 0.0f) {
         bins |= W_BIN_SHADOW;
-        shadow_o[slot] = (float4)(s.anchor, as_float(W_NONE));
-        shadow_l[slot] = (float4)(axis, as_float(h.code));
-        shadow_d[slot] = (float4)(l.direction, l.distance * W_SHADOW_END);
-        shadow_c[slot] = (float4)(c, 0.0f);
+        W_STORE_SHADOW_RAY(slot, s.anchor, axis, h.code, W_NONE, l, c)
       }
     }
   }
@@ -85,9 +79,6 @@ __kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_P
   // A direction whose density has underflowed was drawn from the far tail of its lobe: the lobe's own weight is exact.
   float3 next = weight[slot].xyz * (density > 1e-20f ? f / density : shade.a[lobe] / shade.q[lobe]);
   bins |= w_continue(&frame, &next, depth, &sampler);
-  weight[slot] = (float4)(next, 0.0f);
-  ray_o[slot] = (float4)(s.anchor, as_float(W_NONE));
-  ray_l[slot] = (float4)(axis, as_float(h.code));
-  ray_d[slot] = (float4)(w, density);
+  W_STORE_PATH_RAY(slot, s.anchor, axis, h.code, W_NONE, w, density, next)
   mask[slot] = bins;
 }

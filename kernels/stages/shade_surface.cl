@@ -7,6 +7,7 @@
 #include "stages/continue_path.clh"
 #include "stages/light_args.clh"
 #include "stages/path_state.clh"
+#include "stages/store_rays.clh"
 
 /* Per triangle: corners 9, corner normals 9, material 1, unused 1. */
 #define W_TRIANGLE_WORDS 20
@@ -68,13 +69,8 @@ __kernel void shade_surface(WFrame frame, W_PATH_PARAMS, W_LIGHT_PARAMS, __globa
   if (facing > -1e-3f) n = normalize(n - d * (facing + 1e-3f));
 
 #ifdef W_AOVS
-  if (depth == 0) {
-    __global float4* a = aov + (ulong)slot * 4;
-    a[0] = (float4)(m.color.xyz, t);
-    a[1] = (float4)(n, uv.x);
-    a[2] = (float4)(0.0f, 0.0f, 0.0f, uv.y);
-    a[3] = (float4)(p, as_float(W_NONE));
-  }
+  const float3 none = (float3)(0.0f);
+  if (depth == 0) W_STORE_FEATURES(slot, m.color.xyz, t, n, uv.x, none, uv.y, p, W_NONE)
 #endif
 
   // Rounding of the hit: a few ulps of the largest coordinate and of the way travelled.
@@ -96,10 +92,7 @@ __kernel void shade_surface(WFrame frame, W_PATH_PARAMS, W_LIGHT_PARAMS, __globa
         const float3 c = weight[slot].xyz * f * l.radiance * (share / l.pdf);
         if (w_max3(c) > 0.0f) {
           bins |= W_BIN_SHADOW;
-          shadow_o[slot] = (float4)(p, as_float(skip));
-          shadow_l[slot] = (float4)(lift, as_float(W_NONE));
-          shadow_d[slot] = (float4)(l.direction, l.distance * W_SHADOW_END);
-          shadow_c[slot] = (float4)(c, 0.0f);
+          W_STORE_SHADOW_RAY(slot, p, lift, W_NONE, skip, l, c)
         }
       }
     }
@@ -109,10 +102,7 @@ __kernel void shade_surface(WFrame frame, W_PATH_PARAMS, W_LIGHT_PARAMS, __globa
     float3 next = weight[slot].xyz * w_surface_sample(m, n, wv, u.x, u.y, u.z, &w, &pdf);
     if (pdf > 0.0f && dot(w, n_geo) > 0.0f) {
       bins |= w_continue(&frame, &next, depth, &sampler);
-      weight[slot] = (float4)(next, 0.0f);
-      ray_o[slot] = (float4)(p, as_float(skip));
-      ray_l[slot] = (float4)(lift, as_float(W_NONE));
-      ray_d[slot] = (float4)(w, pdf);
+      W_STORE_PATH_RAY(slot, p, lift, W_NONE, skip, w, pdf, next)
     }
   }
   mask[slot] = bins;

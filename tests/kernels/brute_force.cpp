@@ -40,13 +40,6 @@ struct Polyline {
   }
 };
 
-bool inside_cylinder(dvec3 y, dvec3 e, double rr) {
-  const double ll = glm::dot(e, e);
-  if (ll == 0) return false;
-  const double s = glm::dot(y, e);
-  return s > 0 && s < ll && glm::dot(y, y) - s * s / ll < rr * (1 - 1e-4);
-}
-
 }  // namespace
 
 BruteForce::BruteForce(const std::vector<PlyPatch>& patches, const std::vector<float>& vertices) {
@@ -62,10 +55,11 @@ BruteForce::BruteForce(const std::vector<PlyPatch>& patches, const std::vector<f
       }
       for (uint32_t k = 0; k < patch.intervals; ++k) {
         const long i = long(patch.first + k);
-        Segment s{line.at(i - 1), line.at(i), line.at(i + 1), line.at(i + 2), line.cut(i),        line.cut(i + 1),
-                  false,          false,      patch.radius,   patch.tau,      first + uint32_t(i)};
+        OracleSegment s{line.at(i - 1), line.at(i), line.at(i + 1), line.at(i + 2), line.cut(i),        line.cut(i + 1),
+                        false,          false,      patch.radius,   patch.tau,      first + uint32_t(i)};
         s.sphere_start = s.cut_start;
         s.sphere_end = s.cut_end && !patch.ghost_ends && i + 2 == long(patch.count);
+        index_[s.id] = segments_.size();
         segments_.push_back(s);
         const dvec3 c = 0.5 * (s.start + s.end);
         x_.push_back(c.x);
@@ -74,6 +68,7 @@ BruteForce::BruteForce(const std::vector<PlyPatch>& patches, const std::vector<f
         reach_.push_back(std::pow(0.5 * glm::length(s.end - s.start) + 2.1 * s.radius, 2));
       }
     }
+  connect(patches);
   for (size_t begin = 0; begin < segments_.size(); begin += kBlock) {
     const size_t end = std::min(begin + kBlock, segments_.size());
     dvec3 c(0);
@@ -88,6 +83,25 @@ BruteForce::BruteForce(const std::vector<PlyPatch>& patches, const std::vector<f
   }
 }
 
+void BruteForce::connect(const std::vector<PlyPatch>& patches) {
+  before_.assign(segments_.size(), -1);
+  after_.assign(segments_.size(), -1);
+  const auto join = [&](long a, long b) {
+    if (a < 0 || b < 0 || !joined(segments_[size_t(a)], segments_[size_t(b)])) return;
+    after_[size_t(a)] = b;
+    before_[size_t(b)] = a;
+  };
+  for (const PlyPatch& patch : patches)
+    for (uint32_t p = 0; p < patch.plies; ++p) {
+      const uint32_t first = patch.first_vertex + p * patch.count;
+      for (uint32_t k = 0; k < patch.intervals; ++k) {
+        const uint32_t i = patch.first + k;
+        if (i + 1 < patch.count) join(index_of(first + i), index_of(first + i + 1));
+      }
+      if (patch.ghost_ends && patch.count > 3) join(index_of(first + patch.count - 3), index_of(first + 1));
+    }
+}
+
 OracleHit BruteForce::closest(const Ray& ray, long skip) const {
   OracleHit best;
   const dvec3 o = dvec3(ray.o[0], ray.o[1], ray.o[2]) + dvec3(ray.l[0], ray.l[1], ray.l[2]);
@@ -96,83 +110,52 @@ OracleHit BruteForce::closest(const Ray& ray, long skip) const {
   // The ray's line passes the sphere of squared radius `reach` round (cx, cy, cz).
   const auto meets = [&](double cx, double cy, double cz, double reach) {
     const double x = cx - o.x, y = cy - o.y, z = cz - o.z;
-    const double along = x * d.x + y * d.y + z * d.z;
-    return (x * x + y * y + z * z) - along * along / dd <= reach;
+    const double along = (x * d.x + y * d.y + z * d.z) / dd;
+    const double qx = x - along * d.x, qy = y - along * d.y, qz = z - along * d.z;
+    return qx * qx + qy * qy + qz * qz <= reach;
   };
   std::vector<uint8_t> near_block(block_x_.size());
   for (size_t b = 0; b < near_block.size(); ++b)
     near_block[b] = meets(block_x_[b], block_y_[b], block_z_[b], block_reach_[b]);
+  const long left = skip < 0 ? -1 : index_of(uint32_t(skip));
   for (size_t i = 0; i < segments_.size(); ++i) {
     if (!near_block[i / kBlock]) {
       i = (i / kBlock + 1) * kBlock - 1;
       continue;
     }
-    if (!meets(x_[i], y_[i], z_[i], reach_[i]) || long(segments_[i].id) == skip) continue;
-    const Segment& s = segments_[i];
-    const double r = s.radius, eps = 1e-5 * r;
-    double t = 1e30, h = 0, edge = 1e30;
-    int piece = -1;
-    const auto take = [&](double t_new, double h_new, int piece_new) {
-      if (t_new > 0 && t_new < t) {
-        t = t_new;
-        h = h_new;
-        piece = piece_new;
-      }
-    };
-    const dvec3 e = s.end - s.start, a = unit(e);
-    const dvec3 k = glm::cross(a, d);
-    const double kk = glm::dot(k, k);
-    if (kk > 1e-6 * dd && a != dvec3(0)) {
-      const dvec3 w = o - 0.5 * (s.start + s.end);
-      const double foot = -glm::dot(w, d) / dd;
-      const dvec3 q = w + foot * d;
-      const double l = glm::dot(q, k) / std::sqrt(kk), disc = (r - l) * (r + l);
-      if (disc >= 0) {
-        const double g = (glm::dot(q, d) - glm::dot(a, q) * glm::dot(a, d)) / kk;
-        const double s0 = -g - std::sqrt(disc / kk), t0 = foot + s0;
-        const dvec3 x = q + s0 * d, y1 = x + 0.5 * e, y2 = x - 0.5 * e;
-        const dvec3 t_before = unit(s.start - s.before), t_after = unit(s.after - s.end);
-        bool ok = s.cut_start ? glm::dot(y1, a) >= -eps && !inside_cylinder(y1, s.before - s.start, r * r)
-                              : glm::dot(y1, t_before + a) >= -2 * eps;
-        ok = ok && (s.cut_end ? glm::dot(y2, a) <= eps && !inside_cylinder(y2, s.after - s.end, r * r)
-                              : glm::dot(y2, a + t_after) <= 2 * eps);
-        if (ok) take(t0, l / r, 0);
-        if (piece == 0)
-          edge = std::min(s.cut_start ? glm::dot(y1, a) : glm::dot(y1, unit(t_before + a)),
-                          s.cut_end ? -glm::dot(y2, a) : -glm::dot(y2, unit(a + t_after))) /
-                 r;
-      }
-    }
-    const auto sphere = [&](dvec3 centre, dvec3 ea, dvec3 eb, int which) {
-      const dvec3 w = o - centre;
-      const double foot = -glm::dot(w, d) / dd;
-      const dvec3 q = w + foot * d;
-      const double disc = r * r - glm::dot(q, q);
-      if (disc < 0) return;
-      const double s0 = -std::sqrt(disc / dd);
-      const dvec3 x = q + s0 * d;
-      for (const dvec3& arm : {ea, eb}) {
-        const double length = glm::length(arm), z = length > 0 ? glm::dot(x, arm) / length : 0;
-        if (z > eps && z < length) return;
-      }
-      take(foot + s0, glm::length(q) / r, which);
-    };
-    if (s.sphere_start) sphere(s.start, e, s.before - s.start, 1);
-    if (s.sphere_end) sphere(s.end, -e, s.after - s.end, 2);
-    if (piece < 0 || t > ray.tmax || t > best.t) continue;
-    if (std::abs(long(s.id) - skip) == 1 && skip >= 0 && t < 1e-4 * r) continue;
-    if (s.tau > -1) {
-      const float u = w_hash_uniform(w_hash2(ray.key, s.id));
-      if (u < std::exp(-2.0 * s.tau * std::sqrt(std::max(0.0, 1 - h * h)))) continue;
-    }
-    best.t = t;
+    if (long(i) == left || !meets(x_[i], y_[i], z_[i], reach_[i])) continue;
+    const OracleSegment& s = segments_[i];
+    const SegmentEntry<long double> entry = segment_entry<long double>(s, ray);
+    if (!entry.hit() || entry.t > ray.tmax || entry.t > best.exact_t) continue;
+    if (left >= 0 && entry.t < 1e-4L * s.radius && joined(segments_[size_t(left)], s)) continue;
+    if (passes(s, ray.key, double(entry.h))) continue;
+    best.exact_t = entry.t;
     best.hit = true;
     best.segment = s.id;
-    best.piece = piece;
-    best.h = h;
-    best.edge = piece == 0 ? std::abs(edge) : 1e30;
+    best.piece = entry.piece;
+    best.h = double(entry.h);
+    best.edge = double(entry.edge);
+    best.at = dvec3(entry.at);
   }
+  best.t = double(best.exact_t);
   return best;
+}
+
+bool BruteForce::passes(const OracleSegment& segment, uint32_t key, double h) {
+  return segment.tau > -1 &&
+         w_hash_uniform(w_hash2(key, segment.id)) < std::exp(-2.0 * segment.tau * std::sqrt(std::max(0.0, 1 - h * h)));
+}
+
+// Ends that meet: as vertices of one ply follow each other, or where a closed yarn joins.
+bool BruteForce::joined(const OracleSegment& a, const OracleSegment& b) {
+  if (a.id + 1 == b.id || b.id + 1 == a.id) return true;
+  const double near = 1e-2 * a.radius;
+  return glm::length(a.end - b.start) < near || glm::length(b.end - a.start) < near;
+}
+
+long BruteForce::index_of(uint32_t id) const {
+  const auto found = index_.find(id);
+  return found == index_.end() ? -1 : long(found->second);
 }
 
 }  // namespace wale::test

@@ -1,29 +1,25 @@
 #pragma once
-// The oracle: every segment, in double, one after the other, with the definitions of kernels/geometry/ply_segment.clh
-// written anew.
+// The oracle: every segment, in long double, one after the other.
+#include <algorithm>
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
-#include "geom/vec.h"
 #include "host/ply_tree.h"
 #include "shared/wale_types.h"
+#include "tests/kernels/ply_oracle.h"
 
 namespace wale::test {
 
-/// Ray as the kernels take it: origin o + l.
-struct Ray {
-  float o[3] = {0, 0, 0}, l[3] = {0, 0, 0}, d[3] = {0, 0, 1};
-  float tmax = 1e30f;
-  uint32_t key = 0, skip = 0xffffffffu, skip_triangle = 0xffffffffu, pad = 0;
-};
-
 struct OracleHit {
-  double t = 1e30;
+  double t = 1e30;              ///< metres
+  long double exact_t = 1e30L;  ///< the same, not rounded to double
   bool hit = false;
   uint32_t segment = 0;  ///< vertex id of its start
   int piece = 0;
   double h = 0;
-  double edge = 1e30;  ///< distance of an entry through the side from the nearer plane that ends it, in radii
+  double edge = 1e30;    ///< distance of an entry through the side from the nearer plane that ends it, in radii
+  dvec3 at = {0, 0, 0};  ///< of the entry, from the segment's start, metres
 };
 
 class BruteForce {
@@ -33,16 +29,37 @@ class BruteForce {
   /// `skip` is the id of the segment that the ray starts on, or -1.
   OracleHit closest(const Ray& ray, long skip = -1) const;
   size_t segments() const { return segments_.size(); }
+  const OracleSegment& segment(size_t index) const { return segments_[index]; }
+  /// Place in the list of the segment that starts at vertex `id`, or -1.
+  long index_of(uint32_t id) const;
+  /// Places of the segments that come before and after on the same ply, round the join of a closed yarn too; -1: none.
+  long before(size_t index) const { return before_[index]; }
+  long after(size_t index) const { return after_[index]; }
+  /// Some segment whose bounding sphere holds x satisfies the predicate.
+  template <typename Predicate>
+  bool any_near(dvec3 x, const Predicate& predicate) const {
+    const auto holds = [&](double cx, double cy, double cz, double reach) {
+      const dvec3 w = x - dvec3(cx, cy, cz);
+      return glm::dot(w, w) <= reach;
+    };
+    for (size_t b = 0; b < block_x_.size(); ++b) {
+      if (!holds(block_x_[b], block_y_[b], block_z_[b], block_reach_[b])) continue;
+      for (size_t i = b * kBlock; i < std::min((b + 1) * kBlock, segments_.size()); ++i)
+        if (holds(x_[i], y_[i], z_[i], reach_[i]) && predicate(segments_[i])) return true;
+    }
+    return false;
+  }
+  /// Two segments share a joint; after one of them a ray meets the other from 1e-4 radii on.
+  static bool joined(const OracleSegment& a, const OracleSegment& b);
+  /// A ray of this key goes through the segment without meeting a fibre.
+  static bool passes(const OracleSegment& segment, uint32_t key, double h);
 
  private:
-  struct Segment {
-    dvec3 before, start, end, after;
-    bool cut_start, cut_end, sphere_start, sphere_end;
-    double radius;
-    float tau;
-    uint32_t id;
-  };
-  std::vector<Segment> segments_;
+  void connect(const std::vector<PlyPatch>& patches);
+
+  std::vector<OracleSegment> segments_;
+  std::unordered_map<uint32_t, size_t> index_;
+  std::vector<long> before_, after_;
   std::vector<double> x_, y_, z_, reach_;  // centres and squared bounding radii, apart for a fast first test
   // Spheres round kBlock consecutive segments, which lie beside each other on one yarn: they spare the test of segments
   // that the ray passes by far, and share nothing with the device's tree.

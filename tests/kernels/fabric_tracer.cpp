@@ -2,19 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <type_traits>
+
 #include "host/program.h"
+#include "tests/kernels/trace_kernels.h"
 
 namespace wale::test {
 namespace {
 
 // The arguments of the cell stages are there for every stage; the exact one does not read them.
 constexpr const char* kKernels = R"(
-#include "geometry/ply_surface.clh"
-typedef struct TestRay { float o[3], l[3], d[3]; float tmax; uint key, skip, skip_triangle, pad; } TestRay;
-typedef struct TestHit { float t; uint kind, code; float u, v; uint occluded; } TestHit;
-typedef struct TestSurface {
-  float anchor[3], x[3], n[3], t[3], smooth_n[3]; float phi, u, length, radius, h; uint segment;
-} TestSurface;
 #define PARAMS __global const uint* nodes, __global const uint* node_cell, __global const uint* leaves, \
     __global uint* counters, __global const float* base_positions, __global const uint* base_indices, \
     __global const float* base_uv, __global const uint* cell_triangle_offsets, __global const uint* cell_triangles, \
@@ -30,29 +27,12 @@ typedef struct TestSurface {
 #endif
 #define SCENE WScene s; s.nodes = nodes; s.node_cell = node_cell; s.leaves = leaves; s.ply_root = 0; \
     s.tri_root = W_NONE; s.spheres_count = 0; s.counters = counters; CELLS
-WRay ray_of(__global const TestRay* in) {
-  WRay r;
-  r.o = vload3(0, in->o);
-  r.l = vload3(0, in->l);
-  r.d = vload3(0, in->d);
-  r.tmax = in->tmax;
-  r.key = in->key;
-  r.skip = in->skip;
-  r.skip_triangle = in->skip_triangle;
-  return r;
-}
 __kernel void trace(PARAMS, __global TestHit* hits) {
   const uint i = get_global_id(0);
   if (i >= count) return;
   SCENE
   const WRay r = ray_of(rays + i);
-  const WHit hit = w_closest(&s, &r);
-  hits[i].t = hit.t;
-  hits[i].kind = hit.kind;
-  hits[i].code = hit.code;
-  hits[i].u = hit.u;
-  hits[i].v = hit.v;
-  hits[i].occluded = w_occluded(&s, &r);
+  write_hit(&s, &r, hits + i);
 }
 __kernel void nearest(PARAMS, __global float* out) {
   const uint i = get_global_id(0);
@@ -60,7 +40,7 @@ __kernel void nearest(PARAMS, __global float* out) {
   SCENE
   const WRay r = ray_of(rays + i);
   const WHit hit = w_closest(&s, &r);
-  out[i] = hit.t + (float)(hit.code & 1u);
+  out[i] = (float)hit.t + (float)(hit.code & 1u);
 }
 __kernel void surfaces(PARAMS, __global const TestHit* hits, __global const float* vertices,
                        __global TestSurface* out) {
@@ -68,24 +48,7 @@ __kernel void surfaces(PARAMS, __global const TestHit* hits, __global const floa
   if (i >= count || hits[i].kind != W_HIT_PLY) return;
   SCENE
   const WRay r = ray_of(rays + i);
-  WHit hit;
-  hit.t = hits[i].t;
-  hit.kind = hits[i].kind;
-  hit.code = hits[i].code;
-  hit.u = hits[i].u;
-  hit.v = hits[i].v;
-  const WPlySurface p = w_ply_surface(&s, vertices, &r, &hit);
-  vstore3(p.anchor, 0, out[i].anchor);
-  vstore3(p.x, 0, out[i].x);
-  vstore3(p.n, 0, out[i].n);
-  vstore3(p.t, 0, out[i].t);
-  vstore3(p.smooth_n, 0, out[i].smooth_n);
-  out[i].phi = p.phi;
-  out[i].u = p.u;
-  out[i].length = p.length;
-  out[i].radius = p.radius;
-  out[i].h = p.h;
-  out[i].segment = p.segment;
+  write_surface(&s, vertices, &r, hits + i, out + i);
 }
 )";
 
@@ -119,10 +82,13 @@ FabricTracer::FabricTracer(const Device& device, const Fabric& fabric, float tau
   counters_.fill(device, 0);
 }
 
-cl::Kernel FabricTracer::bound(const char* name, const Buffer<Ray>& rays, size_t count) const {
-  const std::string options = fmt::format("-DW_HAS_PLIES -DW_LANES={} -DW_LOCAL_STAGE={}{}", device_.traits().lanes,
-                                          int(stage_), fibres_ ? " -DW_HAS_FIBRES" : "");
-  cl::Kernel kernel(build_program_text(device_, kKernels, options), name);
+cl::Kernel FabricTracer::bound(const char* name, const Buffer<Ray>& rays, size_t count, bool twice) const {
+  const std::string lanes = twice ? "-DW_DOUBLE -DW_LANES=1" : fmt::format("-DW_LANES={}", device_.traits().lanes);
+  const std::string options =
+      fmt::format("-DW_HAS_PLIES {} -DW_LOCAL_STAGE={}{}", lanes, int(stage_), fibres_ ? " -DW_HAS_FIBRES" : "");
+  auto& program = programs_[twice];
+  if (!program()) program = build_program_text(device_, std::string(kTraceTypes) + kKernels, options);
+  cl::Kernel kernel(program, name);
   const FabricDevice& f = fabric_;
   cl_uint arg = 0;
   for (const cl::Buffer& buffer :
@@ -134,20 +100,23 @@ cl::Kernel FabricTracer::bound(const char* name, const Buffer<Ray>& rays, size_t
   return kernel;
 }
 
-std::vector<Hit> FabricTracer::trace(const std::vector<Ray>& rays) const {
+template <typename Real>
+std::vector<HitOf<Real>> FabricTracer::trace_as(const std::vector<Ray>& rays) const {
   const Buffer<Ray> in(device_, rays);
-  const Buffer<Hit> out(device_, rays.size());
-  cl::Kernel kernel = bound("trace", in, rays.size());
+  const Buffer<HitOf<Real>> out(device_, rays.size());
+  cl::Kernel kernel = bound("trace", in, rays.size(), std::is_same_v<Real, double>);
   kernel.setArg(kFirstOwn, out.cl());
   device_.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device_.global(rays.size()), device_.local());
   return out.read(device_);
 }
 
-std::vector<Surface> FabricTracer::surfaces(const std::vector<Ray>& rays, const std::vector<Hit>& hits) const {
+template <typename Real>
+std::vector<SurfaceOf<Real>> FabricTracer::surfaces_as(const std::vector<Ray>& rays,
+                                                       const std::vector<HitOf<Real>>& hits) const {
   const Buffer<Ray> in(device_, rays);
-  const Buffer<Hit> hit_buffer(device_, hits);
-  const Buffer<Surface> out(device_, rays.size());
-  cl::Kernel kernel = bound("surfaces", in, rays.size());
+  const Buffer<HitOf<Real>> hit_buffer(device_, hits);
+  const Buffer<SurfaceOf<Real>> out(device_, rays.size());
+  cl::Kernel kernel = bound("surfaces", in, rays.size(), std::is_same_v<Real, double>);
   kernel.setArg(kFirstOwn, hit_buffer.cl());
   kernel.setArg(kFirstOwn + 1, fabric_.vertices.cl());
   kernel.setArg(kFirstOwn + 2, out.cl());
@@ -155,10 +124,22 @@ std::vector<Surface> FabricTracer::surfaces(const std::vector<Ray>& rays, const 
   return out.read(device_);
 }
 
+std::vector<Hit> FabricTracer::trace(const std::vector<Ray>& rays) const { return trace_as<float>(rays); }
+std::vector<HitOf<double>> FabricTracer::trace_in_double(const std::vector<Ray>& rays) const {
+  return trace_as<double>(rays);
+}
+std::vector<Surface> FabricTracer::surfaces(const std::vector<Ray>& rays, const std::vector<Hit>& hits) const {
+  return surfaces_as(rays, hits);
+}
+std::vector<SurfaceOf<double>> FabricTracer::surfaces_in_double(const std::vector<Ray>& rays,
+                                                                const std::vector<HitOf<double>>& hits) const {
+  return surfaces_as(rays, hits);
+}
+
 double FabricTracer::seconds(const std::vector<Ray>& rays) const {
   const Buffer<Ray> in(device_, rays);
   const Buffer<float> out(device_, rays.size());
-  cl::Kernel kernel = bound("nearest", in, rays.size());
+  cl::Kernel kernel = bound("nearest", in, rays.size(), false);
   kernel.setArg(kFirstOwn, out.cl());
   cl::Event event;
   device_.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device_.global(rays.size()), device_.local(), nullptr,
@@ -174,6 +155,6 @@ uint32_t FabricTracer::segment(uint32_t code) const {
   return leaf[W_LEAF_SEGMENT] + lane % n * leaf[W_LEAF_STRIDE] + lane / n;
 }
 
-uint32_t FabricTracer::stack_overflows() const { return counters_.read(device_)[W_EVENT_STACK_FULL]; }
+std::vector<uint32_t> FabricTracer::events() const { return counters_.read(device_); }
 
 }  // namespace wale::test

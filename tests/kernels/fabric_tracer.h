@@ -15,17 +15,27 @@ class FabricTracer {
 
   std::vector<Hit> trace(const std::vector<Ray>& rays) const;
   std::vector<Surface> surfaces(const std::vector<Ray>& rays, const std::vector<Hit>& hits) const;
+  /// The same source built with double arithmetic: the device must have fp64.
+  std::vector<HitOf<double>> trace_in_double(const std::vector<Ray>& rays) const;
+  std::vector<SurfaceOf<double>> surfaces_in_double(const std::vector<Ray>& rays,
+                                                    const std::vector<HitOf<double>>& hits) const;
   /// Seconds that the device reports for one launch of the nearest-hit kernel, without copies.
   double seconds(const std::vector<Ray>& rays) const;
   /// Id of the segment behind a hit code: the vertex id of its start.
   uint32_t segment(uint32_t code) const;
-  uint32_t stack_overflows() const;
+  /// The device's counters of rare events (W_EVENT_*) since the tracer was made.
+  std::vector<uint32_t> events() const;
+  uint32_t stack_overflows() const { return events()[W_EVENT_STACK_FULL]; }
   const Box& bounds() const { return fabric_.tree.bounds; }
   const FabricDevice& fabric() const { return fabric_; }
   std::vector<float> vertices() const { return fabric_.vertices.read(device_); }
 
  private:
-  cl::Kernel bound(const char* name, const Buffer<Ray>& rays, size_t count) const;
+  cl::Kernel bound(const char* name, const Buffer<Ray>& rays, size_t count, bool twice) const;
+  template <typename Real>
+  std::vector<HitOf<Real>> trace_as(const std::vector<Ray>& rays) const;
+  template <typename Real>
+  std::vector<SurfaceOf<Real>> surfaces_as(const std::vector<Ray>& rays, const std::vector<HitOf<Real>>& hits) const;
 
   const Device& device_;
   LocalStage stage_;
@@ -33,6 +43,7 @@ class FabricTracer {
   FabricDevice fabric_;
   std::vector<uint32_t> leaves_;
   Buffer<uint32_t> counters_;
+  mutable cl::Program programs_[2];  // float and double, built when first used
 };
 
 }  // namespace wale::test

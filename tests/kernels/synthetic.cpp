@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "host/program.h"
+#include "tests/kernels/trace_kernels.h"
 
 namespace wale::test {
 namespace {
@@ -13,14 +14,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr const char* kTrace = R"(
-#include "geometry/ply_surface.clh"
-typedef struct TestRay { float o[3], l[3], d[3]; float tmax; uint key, skip, skip_triangle, pad; } TestRay;
-typedef struct TestHit { float t; uint kind, code; float u, v; uint occluded; } TestHit;
-typedef struct TestSurface {
-  float anchor[3], x[3], n[3], t[3], smooth_n[3]; float phi, u, length, radius, h; uint segment;
-} TestSurface;
-
-WScene scene_of(__global const uint* nodes, __global const uint* leaves, uint root, __global uint* counters) {
+W_INLINE WScene scene_of(__global const uint* nodes, __global const uint* leaves, uint root, __global uint* counters) {
   WScene s;
   s.nodes = nodes;
   s.leaves = leaves;
@@ -30,30 +24,13 @@ WScene scene_of(__global const uint* nodes, __global const uint* leaves, uint ro
   s.counters = counters;
   return s;
 }
-WRay ray_of(__global const TestRay* in) {
-  WRay r;
-  r.o = (float3)(in->o[0], in->o[1], in->o[2]);
-  r.l = (float3)(in->l[0], in->l[1], in->l[2]);
-  r.d = (float3)(in->d[0], in->d[1], in->d[2]);
-  r.tmax = in->tmax;
-  r.key = in->key;
-  r.skip = in->skip;
-  r.skip_triangle = in->skip_triangle;
-  return r;
-}
 __kernel void trace(__global const uint* nodes, __global const uint* leaves, uint root, __global uint* counters,
                     __global const TestRay* rays, __global TestHit* hits, uint count) {
   const uint i = get_global_id(0);
   if (i >= count) return;
   const WScene s = scene_of(nodes, leaves, root, counters);
   const WRay r = ray_of(rays + i);
-  const WHit hit = w_closest(&s, &r);
-  hits[i].t = hit.t;
-  hits[i].kind = hit.kind;
-  hits[i].code = hit.code;
-  hits[i].u = hit.u;
-  hits[i].v = hit.v;
-  hits[i].occluded = w_occluded(&s, &r);
+  write_hit(&s, &r, hits + i);
 }
 __kernel void closest(__global const uint* nodes, __global const uint* leaves, uint root, __global uint* counters,
                       __global const TestRay* rays, __global float* out, uint count) {
@@ -62,7 +39,7 @@ __kernel void closest(__global const uint* nodes, __global const uint* leaves, u
   const WScene s = scene_of(nodes, leaves, root, counters);
   const WRay r = ray_of(rays + i);
   const WHit hit = w_closest(&s, &r);
-  out[2 * i] = hit.t;
+  out[2 * i] = (float)hit.t;
   out[2 * i + 1] = as_float(hit.code);
 }
 __kernel void occluded(__global const uint* nodes, __global const uint* leaves, uint root, __global uint* counters,
@@ -80,35 +57,21 @@ __kernel void surfaces(__global const uint* nodes, __global const uint* leaves, 
   if (i >= count || hits[i].kind != W_HIT_PLY) return;
   const WScene s = scene_of(nodes, leaves, root, counters);
   const WRay r = ray_of(rays + i);
-  WHit hit;
-  hit.t = hits[i].t;
-  hit.kind = hits[i].kind;
-  hit.code = hits[i].code;
-  hit.u = hits[i].u;
-  hit.v = hits[i].v;
-  const WPlySurface p = w_ply_surface(&s, vertices, &r, &hit);
-  vstore3(p.anchor, 0, out[i].anchor);
-  vstore3(p.x, 0, out[i].x);
-  vstore3(p.n, 0, out[i].n);
-  vstore3(p.t, 0, out[i].t);
-  vstore3(p.smooth_n, 0, out[i].smooth_n);
-  out[i].phi = p.phi;
-  out[i].u = p.u;
-  out[i].length = p.length;
-  out[i].radius = p.radius;
-  out[i].h = p.h;
-  out[i].segment = p.segment;
+  write_surface(&s, vertices, &r, hits + i, out + i);
 }
 )";
 
 const cl::Program& program(const std::string& options) {
   static std::map<std::string, cl::Program> built;
   auto& program = built[options];
-  if (!program()) program = build_program_text(test_device(), kTrace, "-DW_HAS_PLIES " + options);
+  if (!program())
+    program = build_program_text(test_device(), std::string(kTraceTypes) + kTrace, "-DW_HAS_PLIES " + options);
   return program;
 }
 
 dvec3 unit(dvec3 a) { return glm::length(a) > 0 ? glm::normalize(a) : dvec3(1, 0, 0); }
+
+constexpr const char* kDoubleBuild = "-DW_DOUBLE -DW_LANES=1";
 
 }  // namespace
 
@@ -210,9 +173,10 @@ Tracer::Tracer(const Device& device, const Strands& strands)
   counters_.fill(device, 0);
 }
 
-std::vector<Hit> Tracer::trace(const std::vector<Ray>& rays, const std::string& options) {
+template <typename Real>
+std::vector<HitOf<Real>> Tracer::trace_as(const std::vector<Ray>& rays, const std::string& options) {
   const Buffer<Ray> in(device_, rays);
-  const Buffer<Hit> out(device_, rays.size());
+  const Buffer<HitOf<Real>> out(device_, rays.size());
   cl::Kernel kernel(program(options), "trace");
   kernel.setArg(0, tree_.nodes.cl());
   kernel.setArg(1, tree_.leaves.cl());
@@ -223,6 +187,13 @@ std::vector<Hit> Tracer::trace(const std::vector<Ray>& rays, const std::string& 
   kernel.setArg(6, uint32_t(rays.size()));
   device_.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device_.global(rays.size()), device_.local());
   return out.read(device_);
+}
+
+std::vector<Hit> Tracer::trace(const std::vector<Ray>& rays, const std::string& options) {
+  return trace_as<float>(rays, options);
+}
+std::vector<HitOf<double>> Tracer::trace_in_double(const std::vector<Ray>& rays) {
+  return trace_as<double>(rays, kDoubleBuild);
 }
 
 double Tracer::time(const std::vector<Ray>& rays, const std::string& options, const std::string& name) {
@@ -242,11 +213,13 @@ double Tracer::time(const std::vector<Ray>& rays, const std::string& options, co
   return double(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
-std::vector<Surface> Tracer::surfaces(const std::vector<Ray>& rays, const std::vector<Hit>& hits) {
+template <typename Real>
+std::vector<SurfaceOf<Real>> Tracer::surfaces_as(const std::vector<Ray>& rays, const std::vector<HitOf<Real>>& hits,
+                                                 const std::string& options) {
   const Buffer<Ray> in(device_, rays);
-  const Buffer<Hit> hit_buffer(device_, hits);
-  const Buffer<Surface> out(device_, rays.size());
-  cl::Kernel kernel(program("-DW_LANES=16"), "surfaces");
+  const Buffer<HitOf<Real>> hit_buffer(device_, hits);
+  const Buffer<SurfaceOf<Real>> out(device_, rays.size());
+  cl::Kernel kernel(program(options), "surfaces");
   kernel.setArg(0, tree_.nodes.cl());
   kernel.setArg(1, tree_.leaves.cl());
   kernel.setArg(2, tree_.root);
@@ -260,13 +233,21 @@ std::vector<Surface> Tracer::surfaces(const std::vector<Ray>& rays, const std::v
   return out.read(device_);
 }
 
+std::vector<Surface> Tracer::surfaces(const std::vector<Ray>& rays, const std::vector<Hit>& hits) {
+  return surfaces_as(rays, hits, "-DW_LANES=16");
+}
+std::vector<SurfaceOf<double>> Tracer::surfaces_in_double(const std::vector<Ray>& rays,
+                                                          const std::vector<HitOf<double>>& hits) {
+  return surfaces_as(rays, hits, kDoubleBuild);
+}
+
 uint32_t Tracer::segment(uint32_t code) const {
   const uint32_t* leaf = leaves_.data() + size_t(code >> 4) * 4;
   const uint32_t n = leaf[W_LEAF_LAYOUT] & 255, lane = code & 15;
   return leaf[W_LEAF_SEGMENT] + lane % n * leaf[W_LEAF_STRIDE] + lane / n;
 }
 
-uint32_t Tracer::stack_overflows() const { return counters_.read(device_)[W_EVENT_STACK_FULL]; }
+std::vector<uint32_t> Tracer::events() const { return counters_.read(device_); }
 
 Ray make_ray(dvec3 origin, dvec3 direction, uint32_t key) {
   Ray ray;

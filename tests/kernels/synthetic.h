@@ -35,35 +35,52 @@ Strands stockinette(uint32_t rows, uint32_t loops, uint32_t steps_per_loop, doub
 /// The device of all tests of this program: one context, so that programs are compiled once.
 const Device& test_device();
 
-struct Hit {
-  float t;
+/// A hit as the float build or the double build of the kernels writes it.
+template <typename Real>
+struct HitOf {
+  Real t;
   uint32_t kind, code;
-  float u, v;
+  Real u, v;
   uint32_t occluded;
 };
+using Hit = HitOf<float>;
 
 /// What w_ply_surface says about a hit.
-struct Surface {
-  float anchor[3], x[3], n[3], t[3], smooth_n[3];
-  float phi, u, length, radius, h;
+template <typename Real>
+struct SurfaceOf {
+  Real anchor[3], x[3], n[3], t[3], smooth_n[3];
+  Real phi, u, length, radius, h;
   uint32_t segment;
 };
+using Surface = SurfaceOf<float>;
 
 /// Strands on the device, traced with given build options.
 class Tracer {
  public:
   Tracer(const Device& device, const Strands& strands);
   std::vector<Hit> trace(const std::vector<Ray>& rays, const std::string& options);
+  /// The same source built with double arithmetic: the device must have fp64.
+  std::vector<HitOf<double>> trace_in_double(const std::vector<Ray>& rays);
   /// CPU seconds, of all threads, of one launch of kernel `closest` or `occluded` over the rays, without copies.
   double time(const std::vector<Ray>& rays, const std::string& options, const std::string& kernel);
   std::vector<Surface> surfaces(const std::vector<Ray>& rays, const std::vector<Hit>& hits);
+  std::vector<SurfaceOf<double>> surfaces_in_double(const std::vector<Ray>& rays,
+                                                    const std::vector<HitOf<double>>& hits);
   /// Id of the segment behind a hit code.
   uint32_t segment(uint32_t code) const;
-  uint32_t stack_overflows() const;
+  /// The device's counters of rare events (W_EVENT_*) since the tracer was made.
+  std::vector<uint32_t> events() const;
+  uint32_t stack_overflows() const { return events()[W_EVENT_STACK_FULL]; }
   const PlyTree& tree() const { return tree_; }
   const Buffer<float>& vertices() const { return vertices_; }
 
  private:
+  template <typename Real>
+  std::vector<HitOf<Real>> trace_as(const std::vector<Ray>& rays, const std::string& options);
+  template <typename Real>
+  std::vector<SurfaceOf<Real>> surfaces_as(const std::vector<Ray>& rays, const std::vector<HitOf<Real>>& hits,
+                                           const std::string& options);
+
   const Device& device_;
   Buffer<float> vertices_;
   PlyTree tree_;
