@@ -78,7 +78,7 @@ void each_segment(const Fabric& fabric, Visit&& visit) {
 
 // UVs that are the sheet turned, mirrored and moved: the cloth keeps every length of the flat knit.
 TEST(FabricProperty, CongruentUvKeepsRestLengths) {
-  check_property(25, [] {
+  check_property(12, [] {
     const bool mirror = *rc::gen::arbitrary<bool>();
     const Dmat2 turn = random_rotation() * Dmat2(mirror ? -1 : 1, 0, 0, 1);
     const Fabric fabric = knit_fabric(sheet(turn, random_shift(10)), stockinette_pattern(), metric_spec());
@@ -93,7 +93,7 @@ TEST(FabricProperty, CongruentUvKeepsRestLengths) {
 
 // The knit is flat: how its UVs are stretched over space changes no sample, no frame and no length.
 TEST(FabricProperty, StretchInSpaceLeavesTheFlatKnitAlone) {
-  check_property(25, [] {
+  check_property(12, [] {
     const BaseMesh mesh = sheet(random_rotation(), random_shift(1));
     BaseMesh sheared = mesh;
     const double stretch = *number_between(0.5, 2), shear = *number_between(-1, 1);
@@ -111,7 +111,7 @@ TEST(FabricProperty, StretchInSpaceLeavesTheFlatKnitAlone) {
 
 // Whole tiles of displacement are none.
 TEST(FabricProperty, WholeTilesOfDisplacementChangeNothing) {
-  check_property(25, [] {
+  check_property(12, [] {
     const Pattern pattern = stockinette_pattern();
     const BaseMesh mesh = sheet(random_rotation(), random_shift(0.01));
     BaseMesh moved = mesh;
