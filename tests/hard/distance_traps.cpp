@@ -22,17 +22,14 @@ const Picture& plain() {
 }
 
 Finding look_at_similar(const std::vector<Similarity>& places) {
-  Finding worst;
-  worst.error_float = 0;
+  std::vector<Finding> found;
   for (const Similarity& at : places) {
-    const Finding f = look_at_difference(plain(), take(draped_scene(at, kPixels), kSpp, 1));
-    worst.error_float = std::max(worst.error_float, f.error_float);
-    worst.trials += f.trials;
-    worst.rare += f.rare;
-    if (!f.broken.empty())
-      worst.broken += fmt::format(" at scale {:g}, {:g} m away:{}", at.scale, glm::length(at.move), f.broken);
+    found.push_back(look_at_difference(plain(), take(draped_scene(at, kPixels), kSpp, 1)));
+    if (!found.back().broken.empty())
+      found.back().broken =
+          fmt::format(" at scale {:g}, {:g} m away:{}", at.scale, glm::length(at.move), found.back().broken);
   }
-  return worst;
+  return worst_of(found);
 }
 
 // Powers of two leave every mantissa alone: what differs is a constant that has a length.

@@ -47,7 +47,7 @@ void add_props(Scene& scene, const Similarity& at) {
   ground.kind = ObjectScene::Kind::ground;
   ground.up = at.direction(dvec3(0, 0, 1));
   ground.height = glm::dot(ground.up, at.point(dvec3(0, 0, -0.008)));
-  ground.extent = 0.012 * at.scale;
+  ground.extent = 1 * at.scale;  // its border, out of sight, is where its axes happen to lie
   scene.objects = {ball, ground};
 }
 

@@ -12,19 +12,6 @@
 namespace wale::test {
 namespace {
 
-// The worst of several pictures.
-Finding worst_of(const std::vector<Finding>& all) {
-  Finding worst;
-  worst.error_float = 0;
-  for (const Finding& f : all) {
-    worst.error_float = std::max(worst.error_float, f.error_float);
-    worst.trials += f.trials;
-    worst.rare += f.rare;
-    worst.broken += f.broken;
-  }
-  return worst;
-}
-
 Trap constant(const std::string& name, const std::string& breaks, const std::string& promise,
               const std::function<std::vector<ConstantPicture>()>& pictures, int spp = 256) {
   return {name, breaks, promise, "of the radiance", tolerance::kFurnacePicture, 0, [pictures, spp] {

@@ -31,6 +31,18 @@ uint64_t rare_events(const WaveCounts& counts) {
   return sum;
 }
 
+Finding worst_of(const std::vector<Finding>& all) {
+  Finding worst;
+  worst.error_float = 0;
+  for (const Finding& f : all) {
+    worst.error_float = std::max(worst.error_float, f.error_float);
+    worst.trials += f.trials;
+    worst.rare += f.rare;
+    worst.broken += f.broken;
+  }
+  return worst;
+}
+
 Finding look_for_finite(const Picture& picture) {
   Finding found;
   found.trials = picture.counts.paths;
