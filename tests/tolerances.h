@@ -21,4 +21,7 @@ constexpr double kDensityFloat = 2e-4;
 // Statistics: a family of tests fails by chance once in a hundred times, and the seeds are fixed.
 constexpr double kFamilyP = 0.01;
 
+// Seconds of processor time that a reader may take for any file of up to 64 KiB: what a user does not notice.
+constexpr double kReaderSeconds = 1;
+
 }  // namespace wale::tolerance
