@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geom/vec.h"
@@ -35,6 +36,9 @@ struct MeshReport {
 /// a user error naming the file: missing, not a mesh, no faces, NaN or infinite vertices, a face that names no vertex.
 /// Meshes without UV are accepted here (props) and refused by require_uv.
 BaseMesh read_mesh(const std::filesystem::path& file);
+
+/// The same from the bytes of a file; `file` gives the suffix, and the name for messages.
+BaseMesh parse_mesh(std::string_view bytes, const std::filesystem::path& file);
 
 /// Throws the user error that a fabric needs: no UV, or every UV triangle of zero area.
 void require_uv(const BaseMesh& mesh);

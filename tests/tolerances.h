@@ -42,4 +42,7 @@ constexpr double kGrazingShare = 1e-3;     // rays within 1e-3 of a silhouette, 
 // Statistics: a family of tests fails by chance once in a hundred times, and the seeds are fixed.
 constexpr double kFamilyP = 0.01;
 
+// Seconds of processor time that a reader may take for any file of up to 64 KiB: what a user does not notice.
+constexpr double kReaderSeconds = 1;
+
 }  // namespace wale::tolerance
