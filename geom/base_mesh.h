@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geom/vec.h"
@@ -27,6 +28,7 @@ struct MeshReport {
   size_t zero_area_uv = 0;          ///< zero area in UV: kept, never knitted
   size_t flipped_uv = 0;            ///< against the majority of their chart
   double overlap = 0;               ///< share of the covered UV area that is covered more than once
+  double chart_overlap = 0;         ///< the same within single charts, weighted by area: what stays bare
   dvec2 stretch_median{0, 0};       ///< singular values of UV -> space
 };
 
@@ -34,6 +36,9 @@ struct MeshReport {
 /// a user error naming the file: missing, not a mesh, no faces, NaN or infinite vertices, a face that names no vertex.
 /// Meshes without UV are accepted here (props) and refused by require_uv.
 BaseMesh read_mesh(const std::filesystem::path& file);
+
+/// The same from the bytes of a file; `file` gives the suffix, and the name for messages.
+BaseMesh parse_mesh(std::string_view bytes, const std::filesystem::path& file);
 
 /// Throws the user error that a fabric needs: no UV, or every UV triangle of zero area.
 void require_uv(const BaseMesh& mesh);

@@ -71,6 +71,20 @@ double chart_uv_area(const BaseMesh& mesh, const Chart& chart) {
   return 0.5 * area2;
 }
 
+/// A chart drawn out to a line in space, but for rounding.
+bool has_area(const BaseMesh& mesh, const Chart& chart) {
+  dvec3 lo(INFINITY), hi(-INFINITY);
+  double area = 0;
+  for (const uint32_t t : chart.triangles) {
+    const auto& corner = mesh.triangle[t];
+    const dvec3 a = mesh.position[corner[0]], b = mesh.position[corner[1]], c = mesh.position[corner[2]];
+    area += 0.5 * glm::length(glm::cross(b - a, c - a));
+    lo = glm::min(lo, glm::min(a, glm::min(b, c)));
+    hi = glm::max(hi, glm::max(a, glm::max(b, c)));
+  }
+  return area > 1e-12 * glm::dot(hi - lo, hi - lo);
+}
+
 /// Tiles that cover the chart; along a join exactly one turn of them.
 void lay_tiles(const Chart& chart, const FabricSpec& spec, ChartMap& map, ivec2& snapped) {
   dvec2 join(0);
@@ -134,7 +148,7 @@ FabricMap map_fabric(const BaseMesh& mesh, const std::vector<Chart>& charts, con
     ChartMap& chart = map.charts[c];
     const double uv_area = chart_uv_area(mesh, charts[c]);
     const dvec2 metres = charts[c].metres_per_uv;
-    chart.knitted = uv_area > 0 && metres.x > 0 && metres.y > 0;
+    chart.knitted = uv_area > 0 && metres.x > 0 && metres.y > 0 && has_area(mesh, charts[c]);
     if (!chart.knitted) continue;
     chart.metric = spec.scale.kind == FabricScale::Kind::uv_metres ? dvec2(1) : metres;
     chart.uv_per_metre = 1.0 / chart.metric;

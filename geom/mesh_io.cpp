@@ -3,13 +3,13 @@
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <sstream>
 
 #include "geom/base_mesh.h"
 #include "geom/error.h"
 #include "geom/mesh_text_check.h"
 #include "geom/polygon_soup.h"
+#include "geom/text_lines.h"
 
 namespace wale {
 namespace {
@@ -89,12 +89,13 @@ class SoupImporter : public om::IO::BaseImporter {
   om::PolyMesh_ArrayKernelT<> unused_;
 };
 
-PolygonSoup read_with_openmesh(const std::string& file) {
+PolygonSoup read_with_openmesh(std::string_view bytes, const std::string& suffix, const std::string& file) {
   ::omerr().disable();
   ::omlog().disable();
   SoupImporter importer;
   om::IO::Options options = om::IO::Options::VertexTexCoord;
-  if (!om::IO::IOManager().read(file, importer, options))
+  std::istringstream stream{std::string(bytes), std::ios::in | std::ios::binary};
+  if (!om::IO::IOManager().read(stream, suffix, importer, options))
     user_error("{}: not a mesh that can be read; give a complete OBJ, PLY or OFF file", file);
   if (importer.bad_index)
     user_error("{}: a face names a vertex that is not there; valid are 0 to {}", file, importer.n_vertices() - 1);
@@ -106,34 +107,31 @@ PolygonSoup read_with_openmesh(const std::string& file) {
   return std::move(soup);
 }
 
-std::string whole_text(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) user_error("{}: cannot be opened for reading; check its permissions", file.string());
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
 }  // namespace
 
 BaseMesh read_mesh(const std::filesystem::path& file) {
   std::error_code status;
   if (!std::filesystem::is_regular_file(file, status))
     user_error("{}: no such file; give the path of an OBJ, PLY or OFF mesh", file.string());
-  std::string suffix = file.extension().string();
+  return parse_mesh(read_bytes(file), file);
+}
+
+BaseMesh parse_mesh(std::string_view bytes, const std::filesystem::path& path) {
+  const std::string file = path.string();
+  std::string suffix = path.extension().string();
   std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
 
   PolygonSoup soup;
   if (suffix == ".obj") {
-    soup = parse_obj(whole_text(file), file.string());
+    soup = parse_obj(bytes, file);
   } else if (suffix == ".ply" || suffix == ".off") {
-    (suffix == ".ply" ? require_whole_ply : require_whole_off)(whole_text(file), file.string());
-    soup = read_with_openmesh(file.string());
+    (suffix == ".ply" ? require_whole_ply : require_whole_off)(bytes, file);
+    soup = read_with_openmesh(bytes, suffix, file);
   } else {
-    user_error("{}: unknown mesh format '{}'; use .obj, .ply or .off", file.string(), suffix);
+    user_error("{}: unknown mesh format '{}'; use .obj, .ply or .off", file, suffix);
   }
-  BaseMesh mesh = triangulate(soup, file.string());
-  mesh.name = file.string();
+  BaseMesh mesh = triangulate(soup, file);
+  mesh.name = file;
   return mesh;
 }
 

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <span>
 
 #include "geom/base_mesh.h"
 #include "geom/charts.h"
@@ -10,12 +12,12 @@ namespace {
 
 constexpr int kOverlapRaster = 1024;
 
-/// Share of covered raster points that more than one triangle covers. Points on an outline count for no triangle, so
-/// that neighbours never seem to overlap.
-double uv_overlap(const BaseMesh& mesh) {
+/// Share of covered raster points that more than one of the triangles covers. Points on an outline count for no
+/// triangle, so that neighbours never seem to overlap.
+double uv_overlap(const BaseMesh& mesh, std::span<const uint32_t> triangles) {
   dvec2 lo(INFINITY), hi(-INFINITY);
-  for (const auto& t : mesh.uv)
-    for (const dvec2& uv : t) {
+  for (const uint32_t number : triangles)
+    for (const dvec2& uv : mesh.uv[number]) {
       lo = glm::min(lo, uv);
       hi = glm::max(hi, uv);
     }
@@ -23,7 +25,8 @@ double uv_overlap(const BaseMesh& mesh) {
   if (!(step.x > 0 && step.y > 0)) return 0;
 
   std::vector<uint8_t> layers(static_cast<size_t>(kOverlapRaster) * kOverlapRaster, 0);
-  for (const auto& t : mesh.uv) {
+  for (const uint32_t number : triangles) {
+    const auto& t = mesh.uv[number];
     const double area2 = uv_area2(t);
     if (area2 == 0) continue;
     const dvec2 a = glm::min(t[0], glm::min(t[1], t[2])), b = glm::max(t[0], glm::max(t[1], t[2]));
@@ -87,20 +90,31 @@ MeshReport validate(const BaseMesh& mesh) {
   if (mesh.uv.empty()) return report;
 
   std::vector<double> larger, smaller;
-  for (const Chart& chart : find_charts(mesh))
+  std::vector<uint32_t> all(mesh.triangle.size());
+  std::iota(all.begin(), all.end(), 0u);
+  report.overlap = uv_overlap(mesh, all);
+  double covered = 0;
+  for (const Chart& chart : find_charts(mesh)) {
+    double area = 0;
     for (const uint32_t t : chart.triangles) {
       dvec3 du, dv;
       if (!uv_gradient(mesh, t, du, dv)) {
         ++report.zero_area_uv;
         continue;
       }
+      area += std::abs(uv_area2(mesh.uv[t]));
       report.flipped_uv += (uv_area2(mesh.uv[t]) < 0) != chart.mirrored;
       const dvec2 stretch = singular_values(du, dv);
       larger.push_back(stretch.x);
       smaller.push_back(stretch.y);
     }
+    // Where no two triangles of the whole mesh overlap, none of a chart do.
+    if (report.overlap > 0 && chart.triangles.size() > 1)
+      report.chart_overlap += area * uv_overlap(mesh, chart.triangles);
+    covered += area;
+  }
+  if (covered > 0) report.chart_overlap /= covered;
   report.stretch_median = {median(larger), median(smaller)};
-  report.overlap = uv_overlap(mesh);
   return report;
 }
 

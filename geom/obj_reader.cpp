@@ -28,7 +28,8 @@ struct Line {
     if (error == std::errc::result_out_of_range) {
       value = std::numeric_limits<double>::infinity();  // refused later, with the vertex number
     } else if (error != std::errc{}) {
-      user_error("{}:{}: {} is not a number: '{}'", file, number, what, std::string(at, std::min(end, at + 20)));
+      user_error("{}:{}: {} is not a number: '{}'", file, number, what,
+                 std::string(at, std::min<size_t>(static_cast<size_t>(end - at), 20)));
     }
     at = rest;
     return value;
@@ -71,8 +72,8 @@ void parse_face(Line& line, PolygonSoup& soup) {
 
 }  // namespace
 
-PolygonSoup parse_obj(const std::string& original, const std::string& file) {
-  std::string text = original;
+PolygonSoup parse_obj(std::string_view original, const std::string& file) {
+  std::string text(original);
   // A backslash at the end of a line (LF or CR LF) joins the next one to it.
   for (size_t at = 0; (at = text.find('\\', at)) != std::string::npos; ++at) {
     const size_t feed = text.compare(at + 1, 1, "\r") == 0 ? at + 2 : at + 1;

@@ -5,6 +5,7 @@
 
 #include "geom/error.h"
 #include "geom/pattern_readers.h"
+#include "geom/text_lines.h"
 
 namespace wale {
 namespace {
@@ -43,24 +44,36 @@ void check_pattern(const std::filesystem::path& file, const Pattern& pattern) {
   for (size_t c = 0; c < pattern.curves.size(); ++c) check_curve(file, pattern.curves[c], c);
 }
 
+/// In lower case, one of those that the readers have.
+std::string known_suffix(const std::filesystem::path& file) {
+  std::string suffix = file.extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (suffix != ".pyp" && suffix != ".txt" && suffix != ".bcc" && suffix != ".json")
+    user_error("{}: no pattern format has the suffix '{}'; it is one of .pyp, .txt, .bcc, .json", file.string(),
+               suffix);
+  return suffix;
+}
+
 }  // namespace
 
 Pattern read_pattern(const std::filesystem::path& file, const PatternHints& hints) {
   check_hints(file, hints);
-  std::string suffix = file.extension().string();
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
+  known_suffix(file);
+  return parse_pattern(read_bytes(file), file, hints);
+}
+
+Pattern parse_pattern(std::string_view bytes, const std::filesystem::path& file, const PatternHints& hints) {
+  check_hints(file, hints);
+  const std::string suffix = known_suffix(file);
   Pattern pattern;
   if (suffix == ".pyp") {
-    pattern = read_pyp(file, hints);
+    pattern = parse_pyp(bytes, file, hints);
   } else if (suffix == ".txt") {
-    pattern = read_leaf(file, hints);
+    pattern = parse_leaf(bytes, file, hints);
   } else if (suffix == ".bcc") {
-    pattern = read_bcc(file, hints);
-  } else if (suffix == ".json") {
-    pattern = read_pattern_json(file, hints);
+    pattern = parse_bcc(bytes, file, hints);
   } else {
-    user_error("{}: no pattern format has the suffix '{}'; it is one of .pyp, .txt, .bcc, .json", file.string(),
-               suffix);
+    pattern = parse_pattern_json(bytes, file, hints);
   }
   // Some writers end a ring with its first point; the spline closes it by itself.
   for (PatternCurve& curve : pattern.curves)

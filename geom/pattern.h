@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geom/vec.h"
@@ -38,6 +39,9 @@ struct PatternHints {
 /// Reads a tile by its suffix: .pyp, .txt (Leaf et al. 2018), .bcc, .json (Wale). Throws a user error naming the file
 /// and line on anything malformed: no curves, NaN, period or radius not positive.
 Pattern read_pattern(const std::filesystem::path& file, const PatternHints& hints = {});
+
+/// The same from the bytes of a file; `file` gives the suffix, and the name for messages.
+Pattern parse_pattern(std::string_view bytes, const std::filesystem::path& file, const PatternHints& hints = {});
 
 /// Closed-form stockinette (Crane's plain-knit curve): one stitch per tile, sized so that neighbouring rows touch.
 /// `wale_width` is the stitch width in metres.

@@ -3,8 +3,8 @@
 #include <bit>
 #include <cstring>
 
+#include "geom/error.h"
 #include "geom/pattern_readers.h"
-#include "geom/text_lines.h"
 
 namespace wale {
 namespace {
@@ -13,7 +13,7 @@ static_assert(std::endian::native == std::endian::little, "the file is little-en
 
 class Bytes {
  public:
-  explicit Bytes(const std::filesystem::path& file) : file_(file), bytes_(read_bytes(file)) {}
+  Bytes(std::string_view bytes, const std::filesystem::path& file) : file_(file), bytes_(bytes) {}
 
   template <typename T>
   T next(const char* what) {
@@ -28,8 +28,8 @@ class Bytes {
   size_t at() const { return at_; }
 
  private:
-  std::filesystem::path file_;
-  std::string bytes_;
+  const std::filesystem::path& file_;
+  std::string_view bytes_;
   size_t at_ = 0;
 };
 
@@ -57,8 +57,8 @@ dvec3 upright(const dvec3& p, int up) {
 
 }  // namespace
 
-Pattern read_bcc(const std::filesystem::path& file, const PatternHints& hints) {
-  Bytes bytes(file);
+Pattern parse_bcc(std::string_view text, const std::filesystem::path& file, const PatternHints& hints) {
+  Bytes bytes(text, file);
   const Header header = bytes.next<Header>("the header");
   if (std::string_view(header.magic, 3) != "BCC") user_error("{}: does not begin with 'BCC'", file.string());
   if (header.sizes != 0x44)

@@ -69,18 +69,15 @@ class Value {
   const Json& json_;
 };
 
-Json parse(const std::filesystem::path& file) {
-  const std::string text = read_bytes(file);
+Json parse(std::string_view text, const std::string& file) {
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& error) {
     const size_t at = std::min<size_t>(error.byte, text.size());
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(at > 0 ? at - 1 : 0), '\n');
-    std::string what = error.what();
-    std::replace(what.begin(), what.end(), '\n', ' ');
-    user_error("{}:{}: {}", file.string(), line, what);
+    user_error("{}:{}: {}", file, line, error.what());
   } catch (const Json::exception& error) {  // a number beyond double
-    user_error("{}: {}", file.string(), error.what());
+    user_error("{}: {}", file, error.what());
   }
 }
 
@@ -97,9 +94,9 @@ PatternCurve read_curve(const Value& value) {
 
 }  // namespace
 
-Pattern read_pattern_json(const std::filesystem::path& path, const PatternHints& hints) {
+Pattern parse_pattern_json(std::string_view text, const std::filesystem::path& path, const PatternHints& hints) {
   const std::string file = path.string();
-  const Json json = parse(path);
+  const Json json = parse(text, file);
   const Value root(file, "", json);
   root.only({"wale_tile", "name", "period", "yarn_radius", "stitches", "kind", "curves"});
   if (root["wale_tile"].whole() != 1) root["wale_tile"].complain("only version 1 is known");

@@ -2,6 +2,7 @@
 // B-spline control points; neighbouring blocks repeat one control point, sometimes two.
 #include <algorithm>
 
+#include "geom/near_points.h"
 #include "geom/pattern_readers.h"
 #include "geom/stitch.h"
 #include "geom/text_lines.h"
@@ -19,8 +20,8 @@ double radius_in_name(const std::filesystem::path& file) {
   return end && *end == '\0' && std::isfinite(value) ? value : 0;
 }
 
-std::vector<PatternCurve> read_blocks(const std::filesystem::path& file, double unit) {
-  const std::vector<TextLine> lines = read_lines(file);
+std::vector<PatternCurve> read_blocks(std::string_view text, const std::filesystem::path& file, double unit) {
+  const std::vector<TextLine> lines = text_lines(text);
   if (lines.empty() || lines[0].words.size() != 3 || lines[0].words[0] != "Num" || lines[0].words[1] != "Yarns:")
     user_error("{}:1: expected 'Num Yarns: n', as in the files of Leaf et al.", file.string());
   const long wanted = whole_number(file, lines[0].number, lines[0].words[2]);
@@ -69,14 +70,20 @@ bool same_curve(const PatternCurve& a, const PatternCurve& b, dvec3 shift, bool 
 void drop_duplicates(Pattern& pattern) {
   const double tolerance = 1e-3 * pattern.yarn_radius;
   std::vector<PatternCurve> kept;
+  NearPoints ends(tolerance);  // of the kept curves, both
   for (PatternCurve& curve : pattern.curves) {
     bool repeated = false;
-    for (const PatternCurve& other : kept)
-      for (int y = -1; y <= 1; ++y)
-        for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int x = -1; x <= 1; ++x) {
+        const dvec3 shift = displacement(pattern, {x, y});
+        ends.visit_near(curve.points.front() - shift, [&](int number) {
           for (const bool reversed : {false, true})
-            repeated |= same_curve(curve, other, displacement(pattern, {x, y}), reversed, tolerance);
-    if (!repeated) kept.push_back(std::move(curve));
+            repeated = repeated || same_curve(curve, kept[static_cast<size_t>(number)], shift, reversed, tolerance);
+        });
+      }
+    if (repeated) continue;
+    for (const dvec3& end : {curve.points.front(), curve.points.back()}) ends.add(end, static_cast<int>(kept.size()));
+    kept.push_back(std::move(curve));
   }
   pattern.curves = std::move(kept);
 }
@@ -89,22 +96,30 @@ const dvec3& from_end(const PatternCurve& curve, int end, size_t i) {
 /// the first of the two gives its last point up, which leaves the usual overlap by one.
 void trim_double_overlaps(Pattern& pattern, double tolerance) {
   const int count = static_cast<int>(pattern.curves.size());
+  NearPoints seconds(tolerance);  // the point next to each end, 2 d + end; trimming moves it, so both places are kept
+  const auto add_seconds = [&](int d) {
+    for (const int other : {0, 1}) seconds.add(from_end(pattern.curves[d], other, 1), 2 * d + other);
+  };
+  for (int d = 0; d < count; ++d) add_seconds(d);
   for (int c = 0; c < count; ++c)
     for (const int end : {0, 1}) {
       PatternCurve& curve = pattern.curves[c];
       if (curve.points.size() < 3) continue;
       bool overlaps = false;
-      for (int d = 0; d < count; ++d)
-        for (const int other : {0, 1})
-          for (int y = -1; y <= 1; ++y)
-            for (int x = -1; x <= 1; ++x) {
-              if (c == d && end == other) continue;
-              const dvec3 shift = displacement(pattern, {x, y});
-              const PatternCurve& next = pattern.curves[d];
-              overlaps |= glm::distance(from_end(curve, end, 0), from_end(next, other, 1) + shift) <= tolerance &&
-                          glm::distance(from_end(curve, end, 1), from_end(next, other, 0) + shift) <= tolerance;
-            }
-      if (overlaps) curve.points.erase(end == 0 ? curve.points.begin() : curve.points.end() - 1);
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) {
+          const dvec3 shift = displacement(pattern, {x, y});
+          seconds.visit_near(from_end(curve, end, 0) - shift, [&](int number) {
+            const int d = number / 2, other = number % 2;
+            if (overlaps || (c == d && end == other)) return;
+            const PatternCurve& next = pattern.curves[d];
+            overlaps = glm::distance(from_end(curve, end, 0), from_end(next, other, 1) + shift) <= tolerance &&
+                       glm::distance(from_end(curve, end, 1), from_end(next, other, 0) + shift) <= tolerance;
+          });
+        }
+      if (!overlaps) continue;
+      curve.points.erase(end == 0 ? curve.points.begin() : curve.points.end() - 1);
+      add_seconds(c);
     }
 }
 
@@ -124,7 +139,7 @@ void average_ends(Pattern& pattern) {
 
 }  // namespace
 
-Pattern read_leaf(const std::filesystem::path& file, const PatternHints& hints) {
+Pattern parse_leaf(std::string_view text, const std::filesystem::path& file, const PatternHints& hints) {
   const double unit = hints.unit > 0 ? hints.unit : 1e-3;
   Pattern pattern;
   pattern.kind = CurveKind::bspline;
@@ -132,7 +147,7 @@ Pattern read_leaf(const std::filesystem::path& file, const PatternHints& hints) 
   if (!(pattern.yarn_radius > 0))
     user_error("{}: the file name does not end in a positive yarn radius (NAME_RADIUS.txt); give the yarn radius",
                file.string());
-  pattern.curves = read_blocks(file, unit);
+  pattern.curves = read_blocks(text, file, unit);
   drop_duplicates(pattern);  // the period is not known yet: duplicates in place only
   // Published tiles miss by up to 5 % of a radius, and the next end is several radii away.
   const double tolerance = 0.25 * pattern.yarn_radius;

@@ -19,9 +19,9 @@ struct Edge {
 
 class PypFile {
  public:
-  explicit PypFile(const std::filesystem::path& file) : file_(file) {
+  PypFile(std::string_view text, const std::filesystem::path& file) : file_(file) {
     Block* block = nullptr;
-    for (TextLine& line : read_lines(file, '#')) {
+    for (TextLine& line : text_lines(text, '#')) {
       if (line.words[0][0] == '*') {
         block = &blocks_[line.words[0]];
         block->line = line.number;
@@ -34,7 +34,7 @@ class PypFile {
     }
   }
 
-  const Block& block(const std::string& name, size_t rows, size_t columns) const {
+  const Block& block(std::string_view name, size_t rows, size_t columns) const {
     const auto found = blocks_.find(name);
     if (found == blocks_.end()) user_error("{}: block '{}' is missing; is the file cut off?", file_.string(), name);
     const Block& result = found->second;
@@ -55,8 +55,8 @@ class PypFile {
   const std::filesystem::path& path() const { return file_; }
 
  private:
-  std::filesystem::path file_;
-  std::map<std::string, Block> blocks_;
+  const std::filesystem::path& file_;
+  std::map<std::string_view, Block> blocks_;
 };
 
 /// Every vertex has exactly one edge out and one in, so the edges are a permutation: cycles on the torus.
@@ -69,7 +69,7 @@ std::vector<Edge> read_edges(const PypFile& file, size_t count) {
       if (v < 0 || v >= static_cast<long>(count))
         user_error("{}:{}: vertex {} does not exist; vertices are 0 to {}", file.path().string(), row.number, v,
                    count - 1);
-    if (std::abs(dx) > 1 || std::abs(dy) > 1)
+    if (dx < -1 || dx > 1 || dy < -1 || dy > 1)
       user_error("{}:{}: edge crosses by {}, {} periods; only -1, 0 and 1 are possible", file.path().string(),
                  row.number, dx, dy);
     if (edges[from].to >= 0)
@@ -119,8 +119,8 @@ void cut_cycle(int first, const std::vector<Edge>& edges, const std::vector<dvec
 
 }  // namespace
 
-Pattern read_pyp(const std::filesystem::path& path, const PatternHints& hints) {
-  const PypFile file(path);
+Pattern parse_pyp(std::string_view text, const std::filesystem::path& path, const PatternHints& hints) {
+  const PypFile file(text, path);
   const TextLine& head = file.block("*pattern", 1, 4).rows[0];
   Pattern pattern;
   for (const int axis : {0, 1}) {

@@ -1,15 +1,17 @@
 #pragma once
 #include <filesystem>
+#include <string_view>
 
 #include "geom/pattern.h"
 
 namespace wale {
 
-/// Readers of the single formats; read_pattern() chooses by suffix, fills in the stitches and checks what comes back.
-Pattern read_pyp(const std::filesystem::path& file, const PatternHints& hints);
-Pattern read_leaf(const std::filesystem::path& file, const PatternHints& hints);
-Pattern read_bcc(const std::filesystem::path& file, const PatternHints& hints);
-Pattern read_pattern_json(const std::filesystem::path& file, const PatternHints& hints);
+/// Readers of the single formats, from the bytes of a file and its name; parse_pattern() chooses by suffix, fills in
+/// the stitches and checks what comes back.
+Pattern parse_pyp(std::string_view bytes, const std::filesystem::path& file, const PatternHints& hints);
+Pattern parse_leaf(std::string_view bytes, const std::filesystem::path& file, const PatternHints& hints);
+Pattern parse_bcc(std::string_view bytes, const std::filesystem::path& file, const PatternHints& hints);
+Pattern parse_pattern_json(std::string_view bytes, const std::filesystem::path& file, const PatternHints& hints);
 
 /// Moves the curves so that z = 0 is the middle of their z range.
 void recentre_z(Pattern& pattern);

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geom/base_mesh.h"
@@ -22,6 +23,6 @@ struct PolygonSoup {
 BaseMesh triangulate(const PolygonSoup& soup, const std::string& file);
 
 /// OBJ in double: v, vt, f (polygons, negative indices); every other keyword is skipped. Throws a user error file:line.
-PolygonSoup parse_obj(const std::string& text, const std::string& file);
+PolygonSoup parse_obj(std::string_view text, const std::string& file);
 
 }  // namespace wale

@@ -4,10 +4,15 @@
 #include <limits>
 
 #include "geom/error.h"
+#include "geom/near_points.h"
 #include "geom/pattern_readers.h"
 
 namespace wale {
 namespace {
+
+// Every pair of ends votes, and the best votes are tried with each other: beyond this it is no tile, and takes for
+// ever.
+constexpr size_t kMostEnds = 512;
 
 /// A curve end and the point before it, for blocks that overlap by two points (of which a curve of two has no inner
 /// one).
@@ -32,7 +37,7 @@ struct Match {
 };
 
 /// Pairs every end with its nearest end under the periods; counts those that are nearest to each other.
-Match match(const std::vector<End>& ends, dvec2 period, double tolerance) {
+Match match(const std::vector<End>& ends, const NearPoints& places, dvec2 period, double tolerance) {
   struct Nearest {
     size_t to = 0;
     ivec2 shift{0, 0};
@@ -40,12 +45,19 @@ Match match(const std::vector<End>& ends, dvec2 period, double tolerance) {
   };
   std::vector<Nearest> nearest(ends.size());
   for (size_t i = 0; i < ends.size(); ++i)
-    for (size_t j = 0; j < ends.size(); ++j)
-      for (int y = -1; y <= 1 && i != j; ++y)
-        for (int x = -1; x <= 1; ++x) {
-          const double distance = miss(ends[i], ends[j], dvec3(x * period.x, y * period.y, 0));
-          if (distance < nearest[i].distance) nearest[i] = {j, {x, y}, distance};
-        }
+    for (int y = -1; y <= 1; ++y)
+      for (int x = -1; x <= 1; ++x) {
+        const dvec3 shift(x * period.x, y * period.y, 0);
+        const auto consider = [&](int number) {
+          const auto j = static_cast<size_t>(number);
+          if (i == j) return;
+          const double distance = miss(ends[i], ends[j], shift);
+          Nearest& best = nearest[i];
+          if (distance < best.distance || (distance == best.distance && j < best.to)) best = {j, {x, y}, distance};
+        };
+        places.visit_near(ends[i].point - shift, consider);                         // overlap by one point
+        if (ends[i].has_inner) places.visit_near(ends[i].inner - shift, consider);  // by two
+      }
   Match result;
   for (size_t i = 0; i < ends.size(); ++i) {
     const Nearest& to = nearest[i];
@@ -106,6 +118,11 @@ dvec2 recover_periods(const Pattern& pattern, dvec2 known, double tolerance, con
     ends.push_back({p.front(), p[1], p.size() > 2});
     ends.push_back({p.back(), p[p.size() - 2], p.size() > 2});
   }
+  if (ends.size() > kMostEnds)
+    user_error("{}: {} curve ends are too many to recover the period from, at most {}; give the period", file.string(),
+               ends.size(), kMostEnds);
+  NearPoints places(tolerance);
+  for (size_t i = 0; i < ends.size(); ++i) places.add(ends[i].point, static_cast<int>(i));
   std::vector<Candidate> along[2];
   for (const int axis : {0, 1}) {
     along[axis] = known[axis] > 0 ? std::vector<Candidate>{{known[axis], 0}}
@@ -118,7 +135,7 @@ dvec2 recover_periods(const Pattern& pattern, dvec2 known, double tolerance, con
   Match best_match;
   for (const Candidate& x : along[0])
     for (const Candidate& y : along[1]) {
-      const Match tried = match(ends, {x.period, y.period}, tolerance);
+      const Match tried = match(ends, places, {x.period, y.period}, tolerance);
       const bool better = tried.paired > best_match.paired ||
                           (tried.paired == best_match.paired && tried.paired > 0 && tried.worst < best_match.worst);
       if (better) best = {x.period, y.period}, best_match = tried;
@@ -127,7 +144,7 @@ dvec2 recover_periods(const Pattern& pattern, dvec2 known, double tolerance, con
     user_error("{}: the periods cannot be recovered: {} of {} curve ends find a partner at best; give the period",
                file.string(), best_match.paired, ends.size());
   // The mean over all crossings is exact where the file is, and least squares where it is not.
-  const Match refined = match(ends, best, tolerance);
+  const Match refined = match(ends, places, best, tolerance);
   for (const int axis : {0, 1}) {
     if (known[axis] > 0) continue;
     if (refined.crossings[axis] == 0)

@@ -4,9 +4,13 @@
 #include <limits>
 
 #include "geom/error.h"
+#include "geom/near_points.h"
 
 namespace wale {
 namespace {
+
+// Yarns have a thickness: nowhere do so many end within one radius. It keeps a damaged file from taking for ever.
+constexpr size_t kMostNear = 64;
 
 const char* end_name(int end) { return end == 0 ? "first" : "last"; }
 
@@ -106,6 +110,50 @@ YarnChain walk(size_t first, const DirectedTile& tile, Nodes& nodes) {
   }
 }
 
+double distance_to(const Pattern& pattern, Endpoint f, ivec2 shift, Endpoint e) {
+  const dvec3 by(shift.x * pattern.period.x, shift.y * pattern.period.y, 0);
+  return glm::length(point_at(pattern, f) + by - point_at(pattern, e));
+}
+
+/// The nearest other end within the tolerance; of several at one distance the first, by number, then by shift.
+Partner nearest_end(const Pattern& pattern, const std::vector<Endpoint>& ends, const NearPoints& places, size_t i,
+                    double tolerance) {
+  Partner best;
+  best.distance = std::numeric_limits<double>::infinity();
+  size_t best_end = 0, near = 0;
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) {
+      const dvec3 by(x * pattern.period.x, y * pattern.period.y, 0);
+      places.visit_near(point_at(pattern, ends[i]) - by, [&](int number) {
+        const auto j = static_cast<size_t>(number);
+        if (j == i) return;  // a whole period away at best
+        const double distance = distance_to(pattern, ends[j], {x, y}, ends[i]);
+        if (!(distance <= tolerance)) return;
+        if (++near > kMostNear)
+          user_error(
+              "pattern '{}': curve {}, {} end: more than {} ends lie within {:.4g} m of it; check the yarn radius and "
+              "the period ({:.6g} x {:.6g} m)",
+              pattern.name, ends[i].curve, end_name(ends[i].end), kMostNear, tolerance, pattern.period.x,
+              pattern.period.y);
+        if (distance < best.distance || (distance == best.distance && j < best_end)) {
+          best = {ends[j], {x, y}, distance};
+          best_end = j;
+        }
+      });
+    }
+  return best;
+}
+
+/// However far it is; for the message.
+double nearest_distance(const Pattern& pattern, const std::vector<Endpoint>& ends, Endpoint e) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Endpoint& f : ends)
+    for (int y = -1; y <= 1; ++y)
+      for (int x = -1; x <= 1; ++x)
+        if (f != e) nearest = std::min(nearest, distance_to(pattern, f, {x, y}, e));
+  return nearest;
+}
+
 /// The same cycle walked the other way, beginning with the same curve in the same instance.
 YarnChain turned(const YarnChain& yarn) {
   YarnChain result{{}, yarn.closed, -yarn.shift};
@@ -127,24 +175,20 @@ PartnerMap match_partners(const Pattern& pattern, double tolerance) {
   for (int c = 0; c < static_cast<int>(pattern.curves.size()); ++c)
     if (!pattern.curves[c].closed) ends.push_back({c, 0}), ends.push_back({c, 1});
 
+  NearPoints places(tolerance);
+  for (size_t i = 0; i < ends.size(); ++i) places.add(point_at(pattern, ends[i]), static_cast<int>(i));
+
   PartnerMap map;
   map.of.resize(pattern.curves.size());
-  for (const Endpoint& e : ends) {
-    Partner best;
-    best.distance = std::numeric_limits<double>::infinity();
-    for (const Endpoint& f : ends)
-      for (int y = -1; y <= 1; ++y)
-        for (int x = -1; x <= 1; ++x) {
-          if (f == e) continue;  // a whole period away at best
-          const dvec3 shift(x * pattern.period.x, y * pattern.period.y, 0);
-          const double distance = glm::length(point_at(pattern, f) + shift - point_at(pattern, e));
-          if (distance < best.distance) best = {f, {x, y}, distance};
-        }
-    if (!(best.distance <= tolerance))
+  for (size_t i = 0; i < ends.size(); ++i) {
+    const Endpoint& e = ends[i];
+    const Partner best = nearest_end(pattern, ends, places, i, tolerance);
+    if (best.to.curve < 0)
       user_error(
           "pattern '{}': curve {}, {} end: no partner within {:.4g} m, the nearest end is {:.4g} m away; check the "
           "period ({:.6g} x {:.6g} m)",
-          pattern.name, e.curve, end_name(e.end), tolerance, best.distance, pattern.period.x, pattern.period.y);
+          pattern.name, e.curve, end_name(e.end), tolerance, nearest_distance(pattern, ends, e), pattern.period.x,
+          pattern.period.y);
     map.of[e.curve][e.end] = best;
     map.worst_distance = std::max(map.worst_distance, best.distance);
   }

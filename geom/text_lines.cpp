@@ -1,9 +1,9 @@
 #include "geom/text_lines.h"
 
+#include <algorithm>
 #include <charconv>
 #include <fstream>
 #include <iterator>
-#include <sstream>
 
 namespace wale {
 
@@ -17,20 +17,27 @@ std::string read_bytes(const std::filesystem::path& file) {
   return bytes;
 }
 
-std::vector<TextLine> read_lines(const std::filesystem::path& file, char comment) {
-  std::istringstream in(read_bytes(file));
+std::vector<TextLine> text_lines(std::string_view text, char comment) {
+  constexpr std::string_view kBlank = " \t\r\v\f";
   std::vector<TextLine> lines;
-  std::string text;
-  for (int number = 1; std::getline(in, text); ++number) {
-    if (comment != '\0') text.resize(std::min(text.find(comment), text.size()));
-    std::istringstream words(text);
-    TextLine line{number, {std::istream_iterator<std::string>(words), std::istream_iterator<std::string>()}};
+  for (int number = 1; !text.empty(); ++number) {
+    const size_t end = std::min(text.find('\n'), text.size());
+    std::string_view rest = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (comment != '\0') rest = rest.substr(0, rest.find(comment));
+    TextLine line{number, {}};
+    for (size_t from; (from = rest.find_first_not_of(kBlank)) != std::string_view::npos;) {
+      rest.remove_prefix(from);
+      const size_t length = std::min(rest.find_first_of(kBlank), rest.size());
+      line.words.push_back(rest.substr(0, length));
+      rest.remove_prefix(length);
+    }
     if (!line.words.empty()) lines.push_back(std::move(line));
   }
   return lines;
 }
 
-double finite_number(const std::filesystem::path& file, int line, const std::string& word) {
+double finite_number(const std::filesystem::path& file, int line, std::string_view word) {
   double value = 0;
   const char* end = word.data() + word.size();
   const auto [stop, failed] = std::from_chars(word.data(), end, value);
@@ -39,7 +46,7 @@ double finite_number(const std::filesystem::path& file, int line, const std::str
   return value;
 }
 
-long whole_number(const std::filesystem::path& file, int line, const std::string& word) {
+long whole_number(const std::filesystem::path& file, int line, std::string_view word) {
   long value = 0;
   const char* end = word.data() + word.size();
   const auto [stop, failed] = std::from_chars(word.data(), end, value);

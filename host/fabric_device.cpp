@@ -129,18 +129,21 @@ void append(CellLists& out, const Fabric& fabric, size_t cells, uint32_t first_c
   const uint32_t first_grid = uint32_t(out.grids.size());
   out.grid_of_cell.resize(first_cell + cells, 0);
   for (const UvGrid& g : fabric.grids) {
-    out.grids.push_back({g.first_cell + first_cell, g.size.x, g.size.y, g.wrap.x, float(g.origin.x), float(g.origin.y),
-                         float(1 / g.cell_size.x), float(1 / g.cell_size.y), g.wrap.y, 0, 0, 0});
+    // UVs are stored relative to their grid's corner: far from 0 a float would lose the cell.
+    out.grids.push_back({g.first_cell + first_cell, g.size.x, g.size.y, g.wrap.x, 0, 0, float(1 / g.cell_size.x),
+                         float(1 / g.cell_size.y), g.wrap.y, 0, 0, 0});
     std::fill_n(out.grid_of_cell.begin() + first_cell + g.first_cell, size_t(g.size.x) * size_t(g.size.y),
                 uint32_t(out.grids.size() - 1));
   }
   for (size_t t = 0; t < fabric.mesh.triangle.size(); ++t) {
+    uint32_t chart = t < fabric.chart_of_triangle.size() ? fabric.chart_of_triangle[t] : 0;
+    if (chart >= fabric.grids.size()) chart = 0;
+    const dvec2 corner = fabric.grids.empty() ? dvec2(0) : fabric.grids[chart].origin;
     for (const dvec2& uv : fabric.mesh.uv[t]) {
-      out.uv.push_back(float(uv.x));
-      out.uv.push_back(float(uv.y));
+      out.uv.push_back(float(uv.x - corner.x));
+      out.uv.push_back(float(uv.y - corner.y));
     }
-    const uint32_t chart = t < fabric.chart_of_triangle.size() ? fabric.chart_of_triangle[t] : 0;
-    out.uv.push_back(std::bit_cast<float>(first_grid + (chart < fabric.grids.size() ? chart : 0)));
+    out.uv.push_back(std::bit_cast<float>(first_grid + chart));
   }
   for (size_t cell = 0; cell < cells; ++cell) {
     if (cell + 1 < fabric.cell_triangles.offset.size())

@@ -1,6 +1,8 @@
 #include "host/film.h"
 
+#include <algorithm>
 #include <array>
+#include <cfloat>
 #include <cmath>
 
 namespace wale {
@@ -45,7 +47,7 @@ Image develop(const FilmSums& sums, const double origin[3]) {
           const double mean = (c == 0 ? s.x : c == 1 ? s.y : s.z) / s.w, w = s.w / count;
           spread += w * w * (mean - sum[c] / count) * (mean - sum[c] / count);
         }
-        out[3 + c] = float(spread * groups / (groups - 1));
+        out[3 + c] = float(std::min(spread * groups / (groups - 1), double(FLT_MAX)));  // squares of 1e20 and more
       }
     out[6] = float(count);
     if (!aov) continue;

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace wale {
@@ -17,6 +18,9 @@ struct Image {
 
 /// Throws user errors: missing file, not an image; `finite` refuses NaN and infinity, naming the first pixel.
 Image read_image(const std::filesystem::path& file, bool finite = false);
+
+/// The same from the bytes of an EXR, HDR, PNG, JPEG, TIFF, BMP or TGA file; `file` is its name for messages.
+Image parse_image(std::string_view bytes, const std::filesystem::path& file, bool finite = false);
 
 /// Writes by suffix through a temporary name: .exr all channels as float; .png 8-bit RGB through the view transform.
 /// Throws a user error when the folder does not exist or cannot be written, or the suffix is unknown.

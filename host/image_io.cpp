@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geom/error.h"
+#include "geom/text_lines.h"
 #include "host/atomic_file.h"
 #include "host/image.h"
 #include "host/schema.h"
@@ -14,6 +15,9 @@ namespace wale {
 namespace {
 
 constexpr uint64_t kMaxValues = uint64_t(1) << 32;
+// No file packs more numbers into a byte: deflate gives 1032 bytes for one. Else it is a damaged header, which must not
+// make the program reserve gigabytes.
+constexpr uint64_t kValuesPerByte = 2048, kBaseValues = 1 << 16;
 
 std::string suffix_of(const std::filesystem::path& file) {
   std::string suffix = file.extension().string();
@@ -21,10 +25,7 @@ std::string suffix_of(const std::filesystem::path& file) {
   return suffix;
 }
 
-std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text.empty() ? "unknown reason" : text;
-}
+std::string reason(const std::string& text) { return text.empty() ? "unknown reason" : one_line(text); }
 
 // Fixed dither in [0,1): the finaliser of MurmurHash3 on the pixel, so that smooth shades show no bands and the same
 // image gives the same bytes.
@@ -33,6 +34,18 @@ double dither(int x, int y, int channel) {
   h = (h ^ (h >> 16)) * 0x85EBCA6Bu;
   h = (h ^ (h >> 13)) * 0xC2B2AE35u;
   return (h ^ (h >> 16)) * 0x1p-32;
+}
+
+// OpenImageIO's name of the format, from the first bytes. Left to itself the library tries every reader it has on a
+// file that none of them knows; these few are tested with damaged files.
+std::string format_of(std::string_view bytes, const std::filesystem::path& file) {
+  constexpr std::pair<std::string_view, const char*> kFirstBytes[] = {
+      {"v/1\x01", "openexr"}, {"\x89PNG", "png"}, {"\xff\xd8\xff", "jpeg"}, {"#?", "hdr"}, {{"II*\0", 4}, "tiff"},
+      {{"MM\0*", 4}, "tiff"}, {"BM", "bmp"}};
+  for (const auto& [first, format] : kFirstBytes)
+    if (bytes.starts_with(first)) return format;
+  if (suffix_of(file) == ".tga") return "targa";  // has no first bytes of its own
+  user_error("{}: cannot be read as an image; formats are EXR, HDR, PNG, JPEG, TIFF, BMP, TGA", file.string());
 }
 
 void check_finite(const Image& image, const std::string& file) {
@@ -83,7 +96,7 @@ std::string png_file(const Image& image, double exposure, const std::string& vie
   const auto output = OIIO::ImageOutput::create("png");
   if (!output || !output->set_ioproxy(&memory) || !output->open("memory.png", spec) ||
       !output->write_image(spec.format, bytes.data()) || !output->close())
-    bug("PNG: {}", one_line(output ? output->geterror() : OIIO::geterror()));
+    bug("PNG: {}", reason(output ? output->geterror() : OIIO::geterror()));
   return {memory.buffer().begin(), memory.buffer().end()};
 }
 
@@ -93,10 +106,10 @@ void write_exr(const Image& image, const std::filesystem::path& file) {
   spec.attribute("compression", "zip");
   AtomicFile out(file);
   const auto output = OIIO::ImageOutput::create(out.temporary().string());
-  if (!output) bug("{}: OpenImageIO cannot write this suffix: {}", file.string(), one_line(OIIO::geterror()));
+  if (!output) bug("{}: OpenImageIO cannot write this suffix: {}", file.string(), reason(OIIO::geterror()));
   if (!output->open(out.temporary().string(), spec) || !output->write_image(spec.format, image.pixels.data()) ||
       !output->close())
-    user_error("{}: cannot be written: {}", file.string(), one_line(output->geterror()));
+    user_error("{}: cannot be written: {}", file.string(), reason(output->geterror()));
   out.commit();
 }
 
@@ -105,25 +118,34 @@ void write_exr(const Image& image, const std::filesystem::path& file) {
 Image read_image(const std::filesystem::path& file, bool finite) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) user_error("{}: no such image file", file.string());
-  OIIO::ImageSpec how;
+  return parse_image(read_bytes(file), file, finite);
+}
+
+Image parse_image(std::string_view bytes, const std::filesystem::path& path, bool finite) {
+  const std::string file = path.string();
+  const auto input = OIIO::ImageInput::create(format_of(bytes, path));
+  OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size());
+  OIIO::ImageSpec spec, how;
   how.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are stored: alpha must not darken them
-  const auto input = OIIO::ImageInput::open(file.string(), &how);
-  if (!input) user_error("{}: cannot be read as an image: {}", file.string(), one_line(OIIO::geterror()));
-  const OIIO::ImageSpec& spec = input->spec();
+  if (!input || !input->set_ioproxy(&memory) || !input->open(file, spec, how))
+    user_error("{}: cannot be read as an image: {}", file, reason(input ? input->geterror() : OIIO::geterror()));
   const uint64_t values = uint64_t(std::max(0, spec.width)) * std::max(0, spec.height) * std::max(0, spec.nchannels);
   if (values == 0 || values > kMaxValues || spec.deep)
-    user_error("{}: {} x {} with {} channels{} cannot be used", file.string(), spec.width, spec.height, spec.nchannels,
+    user_error("{}: {} x {} with {} channels{} cannot be used", file, spec.width, spec.height, spec.nchannels,
                spec.deep ? " (deep)" : "");
+  if (values > kBaseValues + kValuesPerByte * bytes.size())
+    user_error("{}: {} x {} pixels do not fit into its {} bytes; is the file cut off?", file, spec.width, spec.height,
+               bytes.size());
   Image image;
   image.width = spec.width;
   image.height = spec.height;
   image.channels = spec.channelnames;
   image.pixels.resize(values);
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data()))
-    user_error("{}: cannot be read as an image: {}", file.string(), one_line(input->geterror()));
+    user_error("{}: cannot be read as an image: {}", file, reason(input->geterror()));
   const std::string space = spec.get_string_attribute("oiio:ColorSpace", "sRGB");
   if (!spec.format.is_floating_point() && !OIIO::Strutil::iequals(space, "linear")) decode_srgb(image, spec);
-  if (finite) check_finite(image, file.string());
+  if (finite) check_finite(image, file);
   return image;
 }
 

@@ -12,13 +12,6 @@ namespace wale {
 namespace {
 
 using nlohmann::json;
-constexpr size_t kMaxDepth = 64;
-
-std::string one_line(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
-  return text;
-}
 
 // Follows the tokens of a text that nlohmann's lexer reads. Its SAX events carry no positions, but they come once per
 // token and in order, so the start of a token is found by skipping blanks, comments and separators after the last one.
@@ -129,7 +122,7 @@ class TreeBuilder : public nlohmann::json_sax<json> {
     const size_t bracket = what.find("] ");
     if (bracket != std::string::npos) what.erase(0, bracket + 2);
     if (what.compare(0, 11, "parse error") == 0) what.erase(0, std::min(what.size(), what.find(": ") + 2));
-    throw Error(Fault::user, one_line(cursor_.place_of(position ? position - 1 : 0).text() + ": " + what));
+    user_error("{}: {}", cursor_.place_of(position ? position - 1 : 0).text(), what);
   }
 
  private:
@@ -147,7 +140,7 @@ class TreeBuilder : public nlohmann::json_sax<json> {
 
   bool open(JsonNode::Kind kind) {
     JsonNode& node = leaf(kind);
-    if (stack_.size() >= kMaxDepth) user_error("{}: nested deeper than {} levels", node.place.text(), kMaxDepth);
+    if (stack_.size() >= kMaxJsonDepth) user_error("{}: nested deeper than {} levels", node.place.text(), kMaxJsonDepth);
     stack_.push_back(&node);
     keys_.emplace_back();
     return true;
@@ -244,7 +237,7 @@ JsonNode parse_option_value(const std::string& value, const std::string& option)
 }
 
 void fail_at(const Place& place, const std::string& path, const std::string& what) {
-  throw Error(Fault::user, one_line(fmt::format("{}: {}: {}", place.text(), path, what)));
+  user_error("{}: {}: {}", place.text(), path, what);
 }
 
 }  // namespace wale

@@ -16,6 +16,9 @@ struct Place {
   std::string text() const;
 };
 
+/// Levels that a document may be nested.
+constexpr size_t kMaxJsonDepth = 64;
+
 /// One value of a JSON document that remembers where it stands. Members keep the order of the file.
 struct JsonNode {
   enum class Kind { null, boolean, integer, number, string, array, object } kind = Kind::null;
@@ -45,7 +48,7 @@ struct JsonNode::Member {
 };
 
 /// Parses JSON text (comments allowed). Throws one-line user errors "source:line:column: ..." on bad syntax, a key
-/// given twice, numbers beyond double, nesting deeper than 64.
+/// given twice, numbers beyond double, nesting deeper than kMaxJsonDepth.
 JsonNode parse_json(const std::string& text, const std::string& source);
 
 /// The same from a file; a missing or unreadable file is a user error.

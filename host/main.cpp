@@ -56,13 +56,6 @@ std::string advice(const CLI::App& app, const CLI::ParseError& error) {
          wale::nearest_choice(*option, names);
 }
 
-// Control characters, from a file name or a key, would break the message into lines.
-std::string one_line(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-  return text;
-}
-
 int run(int argc, char** argv) {
   const wale::Loaders loaders{[](const auto& file) { return wale::read_mesh(file); },
                               [](const auto& file) { return wale::read_image(file, true); }};
@@ -110,7 +103,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& e) {
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
-    std::fprintf(stderr, "wale: %s (see `wale --help`)\n", one_line(advice(app, e)).c_str());
+    std::fprintf(stderr, "wale: %s (see `wale --help`)\n", wale::one_line(advice(app, e)).c_str());
     return 1;
   }
   return status;
@@ -122,9 +115,7 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const wale::Error& e) {
-    // A device's build log keeps its lines; what the user did wrong is one.
-    const bool user = e.fault() == wale::Fault::user;
-    std::fprintf(stderr, "wale: %s\n", user ? one_line(e.what()).c_str() : e.what());
+    std::fprintf(stderr, "wale: %s\n", e.what());
     return static_cast<int>(e.fault());
   } catch (const cl::Error& e) {
     std::fprintf(stderr, "wale: OpenCL: %s failed with error %d\n", e.what(), e.err());

@@ -13,11 +13,11 @@ namespace {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-// Words of x (or y, z) of a leaf: every lane may load its four points, masked lanes too.
-uint32_t leaf_stride(const PlyPatch& patch) {
-  const uint32_t points = (patch.intervals + 3) * patch.plies;
-  return (std::max(points, W_LEAF_LANES + 3 * patch.plies) + 3) / 4 * 4;
-}
+// Words of x (or y, z) of a leaf.
+uint32_t leaf_stride(const PlyPatch& patch) { return ((patch.intervals + 3) * patch.plies + 3) / 4 * 4; }
+
+// Masked lanes load their four points too, beyond the last leaf's own.
+constexpr uint32_t kTail = W_LEAF_LANES + 3 * 8;
 
 void write_header(const PlyPatch& patch, uint32_t* leaf) {
   const bool open = !patch.ghost_ends;
@@ -33,6 +33,15 @@ void write_header(const PlyPatch& patch, uint32_t* leaf) {
   leaf[W_LEAF_PLY] = patch.first_ply;
   leaf[W_LEAF_ENDS] =
       (open && patch.first == 0 ? 1u : 0u) | (open && patch.first + patch.intervals + 1 == patch.count ? 2u : 0u);
+}
+
+void refuse_if_too_far(const PlyPatch& patch, const Box& box) {
+  for (int k = 0; k < 3; ++k)
+    if (!(box.lo[k] >= -kLargestCoordinate && box.hi[k] <= kLargestCoordinate && patch.radius <= kLargestCoordinate))
+      user_error(
+          "fabric {}: a ply of radius {:.3g} m reaches from {:.3g} to {:.3g} m; {:.0e} m from the middle of the "
+          "scene is the most that can be traced, in finite numbers: scale the scene down",
+          patch.fabric, patch.radius, box.lo[k], box.hi[k], kLargestCoordinate);
 }
 
 }  // namespace
@@ -54,6 +63,7 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
   if (words / 4 >= 1u << 28 || words * 4 > device.traits().max_alloc_bytes)
     device_error("ply tree: leaves of {} MB do not fit one buffer of {}; use fewer repeats", words * 4 >> 20,
                  device.traits().name);
+  words += kTail;
   std::vector<uint32_t> headers(words, 0), run_of(4 * patches.size());
   for (size_t i = 0; i < patches.size(); ++i) {
     write_header(patches[i], headers.data() + size_t(tree.leaf_offset[i]) * 4);
@@ -76,6 +86,7 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
     for (size_t i = 0; i < boxes.size(); ++i) {
       std::copy_n(flat.begin() + 6 * i, 3, boxes[i].lo);
       std::copy_n(flat.begin() + 6 * i + 3, 3, boxes[i].hi);
+      refuse_if_too_far(patches[i], boxes[i]);
       for (int k = 0; k < 3; ++k) {
         tree.bounds.lo[k] = std::min(tree.bounds.lo[k], boxes[i].lo[k]);
         tree.bounds.hi[k] = std::max(tree.bounds.hi[k], boxes[i].hi[k]);

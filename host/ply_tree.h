@@ -37,10 +37,15 @@ struct PlyTree {
   }
 };
 
+/// Metres from the scene's origin. The kernels multiply three lengths (kernels/geometry/ply_segment.clh), which a float
+/// holds up to 7e12.
+constexpr float kLargestCoordinate = 1e12f;
+
 /// Packs leaves on the device and builds the tree on the host. group_box: see build_wide_tree; when given, each UV cell
 /// gets a node of its own (patches of one cell must follow one another in ascending order of cells), which the cell
 /// stages need. Without it the tree is free of cells: a fifth smaller and faster (bench/results/embree.md).
-/// Throws a device error when a leaf buffer would not fit.
+/// Throws a device error when a leaf buffer would not fit, and a user error when a ply reaches farther out than
+/// kLargestCoordinate, or has a vertex or radius that is no number.
 PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, const Buffer<float>& vertices,
                        std::span<const Box> group_box = {});
 

@@ -27,6 +27,7 @@ Json fabric_json(const Fabric& f, const MeshReport& mesh) {
         {"zero_area_uv", mesh.zero_area_uv},
         {"flipped_uv", mesh.flipped_uv},
         {"uv_overlap", mesh.overlap},
+        {"uv_overlap_in_charts", mesh.chart_overlap},
         {"stretch_median", {mesh.stretch_median.x, mesh.stretch_median.y}}}},
       {"charts", f.charts.size()},
       {"full_yarns", f.report.full_yarns},
@@ -93,7 +94,7 @@ std::string build_report_text(const World& world, const std::vector<TextileMeasu
     if (m.non_manifold_edges || m.degenerate_triangles)
       out += fmt::format("  warning    {} non-manifold edges, {} triangles without area\n", m.non_manifold_edges,
                          m.degenerate_triangles);
-    if (m.overlap > 0.01)
+    if (m.chart_overlap > 0.01)
       out += "  warning    overlapping UVs: where two triangles share a UV, one of them stays bare\n";
     out += fmt::format(
         "  stitch     {:.3f} x {:.3f} mm ({:.2f} wales and {:.2f} courses per cm), tile {:.3f} x {:.3f} mm\n",

@@ -182,6 +182,11 @@ struct Scene {
 /// checking; they may name array elements by index or by "name".
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
+/// The same from the text of a scene file; `file` gives the folder that files are relative to, and the name for
+/// messages.
+Scene parse_scene(const std::string& text, const std::filesystem::path& file,
+                  const std::vector<std::string>& overrides = {});
+
 /// The JSON Schema (draft 2020-12) of scene files, from the same table that read_scene checks against.
 std::string scene_schema();
 

@@ -110,17 +110,20 @@ void join_material_files(JsonNode& scene, const std::filesystem::path& folder) {
     const auto path = std::filesystem::absolute(folder / file->text).lexically_normal();
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored)) continue;
-    JsonNode base = read_json(path);
-    if (base.kind != JsonNode::Kind::object)
-      fail(base, "materials." + name, "a ply material is needed in this file, not {}", base.describe());
-    if (const JsonNode* type = base.find("type"); type && type->kind == JsonNode::Kind::string && type->text != "ply")
-      fail(*type, "materials." + name, "a material of type \"ply\" is needed in this file, not \"{}\"", type->text);
-    if (JsonNode* fitted = base.find("scattering"); fitted && (node.has("optical_radius") || node.has("translucency")))
-      std::erase_if(fitted->members, [](const JsonNode::Member& m) { return m.key == "optical_radius"; });
-    if (const JsonNode* again = base.find("file"))
-      fail(*again, "materials." + name + ".file", "a material file cannot name another one");
-    join(node, base, true);
+    join_material(name, node, read_json(path));
   }
+}
+
+void join_material(const std::string& name, JsonNode& node, JsonNode base) {
+  if (base.kind != JsonNode::Kind::object)
+    fail(base, "materials." + name, "a ply material is needed in this file, not {}", base.describe());
+  if (const JsonNode* type = base.find("type"); type && type->kind == JsonNode::Kind::string && type->text != "ply")
+    fail(*type, "materials." + name, "a material of type \"ply\" is needed in this file, not \"{}\"", type->text);
+  if (JsonNode* fitted = base.find("scattering"); fitted && (node.has("optical_radius") || node.has("translucency")))
+    std::erase_if(fitted->members, [](const JsonNode::Member& m) { return m.key == "optical_radius"; });
+  if (const JsonNode* again = base.find("file"))
+    fail(*again, "materials." + name + ".file", "a material file cannot name another one");
+  join(node, base, true);
 }
 
 MaterialSpec material_of(const std::string& name, const JsonNode& node) {

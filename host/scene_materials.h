@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <string>
 
 #include "host/json_document.h"
 #include "host/scene.h"
@@ -10,6 +11,9 @@ namespace wale {
 /// the material's own, which go before them, also where they exclude one of the file's. Throws a user error when a
 /// file is no material, or names a file in turn; a file that does not exist is left for the schema to report.
 void join_material_files(JsonNode& scene, const std::filesystem::path& folder);
+
+/// The same for one material and the document of its file.
+void join_material(const std::string& name, JsonNode& node, JsonNode base);
 
 /// A checked node of the scene's "materials".
 MaterialSpec material_of(const std::string& name, const JsonNode& node);

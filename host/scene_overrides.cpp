@@ -49,15 +49,16 @@ JsonNode& member(JsonNode& object, const std::string& key, const std::string& op
 }
 
 void apply(JsonNode& document, const std::string& override_text) {
-  std::string option = "--set " + override_text;
-  for (char& c : option)  // messages are one line
-    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+  const std::string option = one_line("--set " + override_text);
   const size_t equals = override_text.find('=');
   if (equals == std::string::npos || equals == 0)
     user_error("{}: not of the form key.path=value, for example film.size=[256,256]", option);
   JsonNode* node = &document;
   std::string path;
-  for (const auto& key : split(override_text.substr(0, equals))) {
+  const auto keys = split(override_text.substr(0, equals));
+  if (keys.size() > kMaxJsonDepth)
+    user_error("{}: a path of {} keys; at most {}", option.substr(0, 60), keys.size(), kMaxJsonDepth);
+  for (const auto& key : keys) {
     if (key.empty()) user_error("{}: an empty key in the path", option);
     if (node->kind == JsonNode::Kind::array)
       node = &element(*node, key, option, path);

@@ -247,10 +247,7 @@ void check_names(const JsonNode& list, const std::string& path) {
         fail(*name, fmt::format("{}.{}.name", path, i), "\"{}\" is the name of another element too", name->text);
 }
 
-}  // namespace
-
-Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  JsonNode root = read_json(file);
+Scene scene_of(JsonNode root, const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   apply_overrides(root, overrides);
   SchemaContext context{1, std::filesystem::absolute(file).parent_path()};
   // Lengths are converted while the document is checked, so the units are looked up first; a wrong word is found there.
@@ -283,6 +280,17 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
     scene.lights.back().kind = LightScene::Kind::environment;
   }
   return scene;
+}
+
+}  // namespace
+
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  return scene_of(read_json(file), file, overrides);
+}
+
+Scene parse_scene(const std::string& text, const std::filesystem::path& file,
+                  const std::vector<std::string>& overrides) {
+  return scene_of(parse_json(text, file.string()), file, overrides);
 }
 
 }  // namespace wale

@@ -8,7 +8,9 @@
 #include <cmath>
 
 #include "geom/error.h"
+#include "geom/mesh_repair.h"
 #include "host/materials.h"
+#include "host/placement.h"
 #include "host/ply_colors.h"
 #include "host/viewpoint.h"
 
@@ -18,6 +20,11 @@ namespace {
 struct Bounds {
   dvec3 lo{1e300, 1e300, 1e300}, hi{-1e300, -1e300, -1e300};
   void add(const dvec3& p) { lo = glm::min(lo, p), hi = glm::max(hi, p); }
+  // What no triangle uses is not there: a forgotten vertex far away must not take the digits of the rest.
+  void add(const BaseMesh& mesh) {
+    for (const auto& t : mesh.triangle)
+      for (const uint32_t v : t) add(mesh.position[v]);
+  }
   bool empty() const { return lo.x > hi.x; }
   dvec3 centre() const { return 0.5 * (lo + hi); }
   double radius() const { return empty() ? 1.0 : std::max(1e-9, 0.5 * glm::length(hi - lo)); }
@@ -37,6 +44,7 @@ class Builder {
     step("props", [&] {
       add_objects();
       choose_origin();
+      for (const Fabric& fabric : world_.fabrics) refuse_if_rounded(fabric, world_.origin);
       add_lights();
     });
     world_.camera = camera();
@@ -57,7 +65,11 @@ class Builder {
     for (const auto& fabric : scene_.fabrics) {
       BaseMesh mesh = load_mesh(fabric.mesh, loaders_);
       require_uv(mesh);
+      if (const size_t joined = join_duplicate_vertices(mesh))
+        world_.notes.push_back(fmt::format("fabric \"{}\": {} vertices in the place of another one are joined to it",
+                                           fabric.spec.name, joined));
       transform_mesh(mesh, fabric.transform);
+      refuse_if_out_of_reach(mesh, fabric.spec.name);
       const Pattern pattern = load_pattern(fabric.pattern);
       const PlyAppearance& yarn = scene_.materials.at(size_t(fabric.material)).yarn;
       FabricSpec spec = fabric.spec;
@@ -65,7 +77,8 @@ class Builder {
       spec.places = colors_need_places(yarn, fabric.color_image);
       refuse_if_too_large(mesh, pattern, spec);
       world_.fabric_mesh_reports.push_back(validate(mesh));
-      for (const auto& p : mesh.position) bounds_.add(p), fabric_bounds_.add(p);
+      part_opposed_seams(mesh);
+      bounds_.add(mesh), fabric_bounds_.add(mesh);
       world_.fabrics.push_back(knit_fabric(std::move(mesh), pattern, spec));
       world_.fabric_material.push_back(uint32_t(world_.ply_materials.size()));
       world_.ply_materials.push_back(ply_material(yarn));
@@ -166,7 +179,8 @@ class Builder {
       } else {
         BaseMesh mesh = load_mesh(object.mesh, loaders_);
         transform_mesh(mesh, object.transform);
-        for (const auto& p : mesh.position) bounds_.add(p);
+        refuse_if_out_of_reach(mesh, object.name);
+        bounds_.add(mesh);
         add_triangles(mesh, material);
       }
     }
@@ -308,7 +322,9 @@ class Builder {
     const CameraScene seen =
         scene_.camera_given ? scene_.camera
                             : framed_camera(scene_.camera, scene_.film, b.empty() ? dvec3(0) : b.centre(), b.radius());
-    return device_camera(seen, scene_.film, world_.origin);
+    const WCamera made = device_camera(seen, scene_.film, world_.origin);
+    refuse_if_pixels_are_rounded(made, glm::length(seen.position - world_.origin));
+    return made;
   }
 
   struct Sphere {

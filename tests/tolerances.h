@@ -19,11 +19,30 @@ constexpr double kOffSurfaceFloat = 1e-6;  // the point is set back on its surfa
 constexpr double kPointFloat = 1e-4;       // what is promised; where |h| < 0.99 and the ray does not run along the axis
 constexpr double kPointDouble = 1e-9;      // the vertices' coordinates in double, 1e-16 of 1e6 radii
 
+// Rays and plies at their limits.
+constexpr double kAcrossJoint = 5e-3;  // two rays 1e-3 radii beside a joint; a ply's frame turns by less than 2/r there
+constexpr double kCreepDepth = 1.001e-3;  // W_PARALLEL of the kernels is the square of 1e-3, rounded
+constexpr double kMoved = 1e-4;           // radii: rounding of coordinates a few hundred radii from the origin
+constexpr double kWildRayTime = 2.5;      // NaN and infinite rays over sound ones
+constexpr double kFurnaceMean = 0.005;    // three standard errors of a picture of 24 x 24 pixels and 256 samples
+
 // Lights.
 constexpr double kFormFactor = 2e-3;  // mean of 2^18 stratified samples against closed forms
 constexpr double kDensityFloat = 2e-4;
 
+// Hard cases.
+constexpr double kFurnacePicture = 0.005;  // mean of a white furnace of 1e5 paths: four standard errors
+constexpr double kFurnaceSmall = 0.02;     // the same of 1e4 paths
+constexpr double kProportional = 1e-5;     // sums of 64 floats in another order of magnitude
+constexpr double kStandardErrors = 4;      // of one statistic: by chance once in 16000 times
+constexpr double kLessThanNoise = 1;       // the promise itself
+constexpr double kPixelsOfAnotherScale = 0.01;
+constexpr double kGrazingShare = 1e-3;     // rays within 1e-3 of a silhouette, |h| > 0.999, that float may decide otherwise
+
 // Statistics: a family of tests fails by chance once in a hundred times, and the seeds are fixed.
 constexpr double kFamilyP = 0.01;
+
+// Seconds of processor time that a reader may take for any file of up to 64 KiB: what a user does not notice.
+constexpr double kReaderSeconds = 1;
 
 }  // namespace wale::tolerance

@@ -33,8 +33,8 @@ typedef int32_t w_int;
    `intervals` consecutive segments of all n plies of one yarn. Lane l = k*n + p is segment k of ply p. Header of
    W_LEAF_HEADER words, then x[S], y[S], z[S] of the points: point (k, p) at index k*n + p for k = 0 .. intervals+2,
    where k = 0 is the vertex before the first segment, so that lane l finds its four points (previous, start, end,
-   next) at l, l+n, l+2n, l+3n. S = (intervals+3)*n rounded up to a multiple of 4, at least 16 + 3n (masked lanes read
-   padding). Missing neighbours at open ends repeat the end vertex. */
+   next) at l, l+n, l+2n, l+3n. S = (intervals+3)*n rounded up to a multiple of 4; masked lanes read what follows, and
+   the buffer ends in words that no leaf owns. Missing neighbours at open ends repeat the end vertex. */
 #define W_LEAF_LANES 16
 #define W_LEAF_HEADER 12
 #define W_LEAF_RADIUS 0   /* float, metres */

@@ -151,6 +151,27 @@ TEST_F(MeshFiles, TruncatedPly) {
   EXPECT_THROW(read_mesh(file), Error);
 }
 
+// OpenMesh takes words one after the other, whatever the line says, and loops where one is not what it expects.
+TEST_F(MeshFiles, TextPlyWithWordsOfAnotherKindIsRefused) {
+  const std::string types = "property float x\nproperty float y\nproperty float z\n";
+  const auto refused = [&](const std::string& format, const std::string& point, const std::string& face) {
+    return message([&] {
+      read_mesh(
+          write("p.ply", "ply\nformat " + format + "\nelement vertex 3\n" + types +
+                             "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n" +
+                             point + "\n" + face + "\n"));
+    });
+  };
+  expect_contains(refused("ascii 1.0", "0 1 x", "3 0 1 2"), "'x' is not a number");
+  expect_contains(refused("ascii 1.0", "0 1 1e300", "3 0 1 2"), "'1e300' is not a number that a float holds");
+  expect_contains(refused("ascii 1.0", "0 1 nan", "3 0 1 2"), "'nan' is not a number");
+  expect_contains(refused("ascii 1.0", "0 1 0 7", "3 0 1 2"), "'7' is one word too many");
+  expect_contains(refused("ascii 1.0", "0 1 0", "3 0 1 2.5"), "'2.5' is not a whole number");
+  expect_contains(refused("binary_little_endian endian 1.0", "0 1 0", "3 0 1 2"), "not a PLY format");
+  expect_contains(refused("ascii 1.0\nelement", "0 1 0", "3 0 1 2"), "a number of elements is needed");
+  expect_contains(refused("ascii 1.0\nrubbish", "0 1 0", "3 0 1 2"), "'rubbish' does not belong");
+}
+
 // OpenMesh reads stale numbers, or loops for minutes, where a text file ends early.
 TEST_F(MeshFiles, TextPlyThatEndsEarly) {
   const std::string head =
@@ -231,6 +252,26 @@ TEST_F(MeshFiles, NonManifoldEdgesAreCountedAndNothingIsDuplicated) {
   const BaseMesh off = read_mesh(ply);
   EXPECT_EQ(off.position.size(), 5u);
   EXPECT_EQ(validate(off).non_manifold_edges, 1u);
+}
+
+std::string binary_ply(const std::string& vertices, const std::string& list, const std::string& body) {
+  return "ply\nformat binary_little_endian 1.0\nelement vertex " + vertices + "element face 1\nproperty list " + list +
+         " vertex_indices\nend_header\n" + body;
+}
+const std::string kXyz = "property float x\nproperty float y\nproperty float z\n";
+
+// A header costs nothing and may promise anything: what it promises has to be there before anything is reserved for it.
+TEST_F(MeshFiles, BinaryPlyThatPromisesTooMuchIsRefused) {
+  const std::string three(36, '\0'), face("\x03\0\0\0\0\1\0\0\0\2\0\0\0", 13);
+  const auto refused = [&](const std::string& text) { return message([&] { read_mesh(write("b.ply", text)); }); };
+  EXPECT_EQ(read_mesh(write("b.ply", binary_ply("3\n" + kXyz, "uchar int", three + face))).triangle.size(), 1u);
+  expect_contains(refused(binary_ply("4000000000\n" + kXyz, "uchar int", three + face)),
+                  "the file ends before vertex 5 of the 4000000000");
+  expect_contains(refused(binary_ply("400000000\n", "uchar int", three + face)), "without a property");
+  expect_contains(refused(binary_ply("3\n" + kXyz, "uchar int", three + face.substr(0, 12))), "before face 1 of the 1");
+  expect_contains(refused(binary_ply("3\n" + kXyz, "char int", three + "\x83" + face.substr(1))), "before face 1");
+  expect_contains(refused(binary_ply("3\n" + kXyz, "float int", three + face)), "'float'; a whole number is needed");
+  expect_contains(refused(binary_ply("3\n" + kXyz, "uchar long", three + face)), "'long' is no type of a PLY");
 }
 
 TEST_F(MeshFiles, DegenerateTrianglesAreKeptAndCounted) {

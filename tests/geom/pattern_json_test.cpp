@@ -78,6 +78,7 @@ TEST(JsonTile, EmptyCurves) {
 TEST(JsonTile, UnknownKind) { expect_refused("\"bspline\"", "\"bezier\"", {"'bezier'", "interpolating or bspline"}); }
 TEST(JsonTile, ZeroStitches) { expect_refused("[1, 2]", "[1, 0]", {"stitches[1]", "at least 1"}); }
 TEST(JsonTile, HugeStitches) { expect_refused("[1, 2]", "[1, 99999999999]", {"stitches[1]", "too large"}); }
+TEST(JsonTile, KeyOfTwoLinesIsNamedInOne) { expect_refused("\"name\"", "\"na\\nme\"", {"unknown key 'na me'"}); }
 TEST(JsonTile, PointsThatCoincide) {
   expect_refused("[0.001, 0.0005, 0], [0.002, 0, 0]", "[0, 0, 0]", {"curve 0", "coincide"});
 }

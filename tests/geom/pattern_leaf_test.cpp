@@ -152,6 +152,21 @@ TEST(LeafReader, GivenPeriodIsUsed) {
   EXPECT_NEAR(tile.period.x, 0.002, 1e-15);
   EXPECT_EQ(tile.period.y, 0.003);
 }
+// Every pair of ends votes for a period: a file of 64 KiB must not take a minute, nor a gigabyte.
+TEST(LeafReader, ThousandsOfCurvesAreRefusedAtOnce) {
+  std::string text = "Num Yarns: 4600\n";
+  for (int i = 0; i < 4600; ++i) text += fmt::format("2\n{} {} 0\n1 0 0\n", i % 97, i / 97);
+  expect_refused(text, {"curve ends", "at most 512", "give the period"});
+}
+TEST(LeafReader, ThousandsOfEndsInOnePlaceAreRefused) {
+  std::string text = "Num Yarns: 2000\n";
+  for (int i = 0; i < 2000; ++i) text += fmt::format("3\n0 0 0\n{} 1 0\n1 0 0\n", i);
+  ScratchFolder folder;
+  PatternHints hints;
+  hints.period = {0.001, 0.001};
+  const auto file = folder.write("tile_0.5.txt", text);
+  expect_user_error([&] { read_pattern(file, hints); }, {"more than 64 ends", "yarn radius"});
+}
 TEST(LeafReader, WriterRefusesRings) {
   ScratchFolder folder;
   expect_user_error([&] { write_pattern_leaf(diagonal_and_ring(), folder / "t_1.txt"); }, {"closed", ".json"});

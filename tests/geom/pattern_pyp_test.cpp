@@ -90,6 +90,10 @@ TEST(PypReader, RowTooShort) { expect_refused(changed("4 5 0 0", "4 5 0"), {":18
 TEST(PypReader, EdgeIndexOutOfRange) { expect_refused(changed("4 5 0 0", "4 7 0 0"), {":18:", "vertex 7", "0 to 6"}); }
 TEST(PypReader, NegativeEdgeIndex) { expect_refused(changed("4 5 0 0", "-4 5 0 0"), {":18:", "vertex -4"}); }
 TEST(PypReader, EdgeAcrossTwoPeriods) { expect_refused(changed("4 5 0 0", "4 5 2 0"), {":18:", "-1, 0 and 1"}); }
+// The magnitude of the least long is no long: the check of it must not need one.
+TEST(PypReader, EdgeAcrossTheLeastLong) {
+  expect_refused(changed("4 5 0 0", "4 5 -9223372036854775808 0"), {":18:", "-1, 0 and 1"});
+}
 TEST(PypReader, BranchIsRefused) { expect_refused(changed("5 6 0 0", "4 6 0 0"), {":19:", "leaves vertex 4"}); }
 TEST(PypReader, MergeIsRefused) { expect_refused(changed("5 6 0 0", "5 5 0 0"), {":19:", "enters vertex 5"}); }
 TEST(PypReader, Truncated) {

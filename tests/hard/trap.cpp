@@ -9,7 +9,8 @@ namespace wale::test {
 const std::vector<Trap>& traps() {
   static const std::vector<Trap> all = [] {
     std::vector<Trap> list;
-    for (const auto& part : {ray_traps(), curve_traps(), mesh_traps(), light_traps(), distance_traps(), number_traps()})
+    for (const auto& part :
+         {ray_traps(), curve_traps(), mesh_traps(), fabric_traps(), light_traps(), distance_traps(), number_traps()})
       list.insert(list.end(), part.begin(), part.end());
     return list;
   }();

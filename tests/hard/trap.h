@@ -33,6 +33,7 @@ struct Trap {
 std::vector<Trap> ray_traps();       ///< a ray against one or a few ply segments
 std::vector<Trap> curve_traps();     ///< shapes of plies
 std::vector<Trap> mesh_traps();      ///< base meshes, UVs and tiles
+std::vector<Trap> fabric_traps();    ///< tiles and meshes of unequal size, at their limits
 std::vector<Trap> light_traps();     ///< lights, cameras, materials at their limits
 std::vector<Trap> distance_traps();  ///< scale and place of whole scenes
 std::vector<Trap> number_traps();    ///< NaN, Inf, denormals, random bits

@@ -139,6 +139,24 @@ TEST(Image, BrokenFilesAreRefused) {
   }
 }
 
+// The header's promise alone must not make the program reserve gigabytes.
+TEST(Image, HeaderThatPromisesMoreThanTheFileHoldsIsRefused) {
+  std::string tga(18, '\0');
+  tga[2] = 2, tga[16] = 24;
+  for (const size_t at : {12, 14}) tga[at] = '\0', tga[at + 1] = '\x60';  // 24576 pixels
+  const TemporaryFolder folder;
+  const std::string message = user_message([&] { read_image(folder.write("a.tga", tga)); });
+  EXPECT_NE(message.find("24576 x 24576 pixels do not fit into its 18 bytes"), std::string::npos) << message;
+}
+
+TEST(Image, OtherFormatsAreRefused) {
+  const TemporaryFolder folder;
+  const std::string message = user_message([&] { read_image(folder.write("a.psd", "8BPS")); });
+  EXPECT_NE(message.find("cannot be read as an image; formats are EXR, HDR, PNG, JPEG, TIFF, BMP, TGA"),
+            std::string::npos)
+      << message;
+}
+
 TEST(Image, RealEnvironmentMapsAreReadWhole) {
   const char* data = std::getenv("WALE_REAL_DATA");
   if (!data) GTEST_SKIP() << "real data not present";

@@ -358,5 +358,16 @@ TEST(SceneErrors, SizeOfAnotherGenerator) {
                   .starts_with("s.json:2:44: fabrics.0.mesh.width: unknown key; "));
 }
 
+// Each key would nest the document one level deeper, until its destruction ran out of stack.
+TEST(SceneErrors, SetWithAPathOfThousandsOfKeys) {
+  std::string path = "a";
+  for (int i = 0; i < 30000; ++i) path += ".a";
+  const TemporaryFolder folder;
+  const auto scene = folder.write("s.json", R"({"wale": 1})");
+  const std::string message = user_message([&] { read_scene(scene, {path + "=1"}); });
+  EXPECT_NE(message.find("a path of 30001 keys; at most 64"), std::string::npos) << message;
+  EXPECT_LT(message.size(), 200u);
+}
+
 }  // namespace
 }  // namespace wale

@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+"""Writes the seeds of the readers' fuzzers: the smallest files that reach every branch of a format.
+
+usage: make_corpus.py [FOLDER]   (pictures need oiiotool)
+"""
+import json
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent / "corpus")
+
+
+def write(target, name, data):
+    (ROOT / target).mkdir(parents=True, exist_ok=True)
+    (ROOT / target / name).write_bytes(data if isinstance(data, bytes) else data.encode())
+
+
+def pyp(period, radius, points, edges):
+    rows = [f"*pattern\n{period[0]} {period[1]} {radius} {len(points)}\n*Q"]
+    rows += [" ".join(map(str, p)) for p in points] + ["*E"]
+    return "\n".join(rows + [" ".join(map(str, e)) for e in edges]) + "\n"
+
+
+def patterns():
+    write("pyp", "row", "# one yarn\n" + pyp((1, 1), 0.1, [(0.2, 0.5, 0), (0.7, 0.5, 0.1)], [(0, 1, 0, 0), (1, 0, 1, 0)]))
+    write("pyp", "ring", pyp((1, 1), 0.1, [(0.2, 0.2, 0), (0.7, 0.2, 0), (0.5, 0.7, 0)],
+                             [(0, 1, 0, 0), (1, 2, 0, 0), (2, 0, 0, 0)]))
+    write("pyp", "weave", pyp((1, 1), 0.1, [(0, 0.5, 0.1), (0.5, 0.5, -0.1), (0.5, 0, 0.1), (0.5, 0.5, 0.1)],
+                              [(0, 1, 0, 0), (1, 0, 1, 0), (2, 3, 0, 0), (3, 2, 0, 1)]))
+
+    def leaf(*curves):
+        text = f"Num Yarns: {len(curves)}\n"
+        return text + "".join(f"\n{len(c)}\n" + "".join("%g %g %g\n" % p for p in c) for c in curves)
+
+    row = [(x / 2, 0, 0) for x in range(5)]
+    write("leaf", "grid", leaf(row, [(1, y / 2, 1) for y in range(5)]))
+    write("leaf", "overlap", leaf(row + [(2.5, 0, 0)], [(1, y / 2, 1) for y in range(6)]))
+    write("leaf", "twice", leaf(row, row[::-1], [(0.7, 0, 0.2), (0.7, 2, 0.2)], [(0.7, 2, 0.2), (0.7, 0, 0.2)]))
+
+    def bcc(kind, up, *curves):
+        total = sum(len(c) for c, _ in curves)
+        out = b"BCC\x44" + kind + bytes([3, up]) + struct.pack("<QQ", len(curves), total)
+        out += bytes(64 - len(out))
+        for points, closed in curves:
+            out += struct.pack("<i", -len(points) if closed else len(points))
+            out += b"".join(struct.pack("<3f", *p) for p in points)
+        return out
+
+    line = [(0, 0.5, 0), (0.5, 0.5, 0.1), (1, 0.5, 0)]
+    write("bcc", "line", bcc(b"C0", 2, (line, False)))
+    write("bcc", "ring", bcc(b"BS", 1, ([(0, 0, 0), (0.3, 0, 0), (0, 0, 0.3), (0, 0, 0)], True)))
+    write("bcc", "up", bcc(b"PL", 0, ([(0.5, 0, 0), (0.5, 0, 1)], False)))
+
+    tile = {"wale_tile": 1, "name": "row", "period": [0.01, 0.01], "yarn_radius": 0.001, "stitches": [1, 1],
+            "kind": "bspline", "curves": [{"points": [[0, 0.005, 0], [0.005, 0.005, 0], [0.01, 0.005, 0]], "closed": False}]}
+    write("tile_json", "row", json.dumps(tile))
+    tile["curves"] = [{"points": [[0.001, 0.002, 0], [0.004, 0.002, 0], [0.002, 0.004, 0.001]], "closed": True}]
+    del tile["stitches"], tile["kind"], tile["name"]
+    write("tile_json", "ring", json.dumps(tile))
+
+
+def meshes():
+    write("obj", "quad", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 .5\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0\nf 1/1 2/2 3/3 4/4\n")
+    write("obj", "relative", "# from the end\no x\nv 0 0 0\nv 1 0 0 1\nv +1 1e0 0\nvn 0 0 1\nf -3//1 -2//1 \\\n -1//1\r\n")
+    ply = ("ply\nformat %s 1.0\ncomment seed\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+           "property float s\nproperty float t\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n")
+    corners = [(0, 0, 0, 0, 0), (1, 0, 0, 1, 0), (0, 1, 0, 0, 1)]
+    text = ply % "ascii" + "".join("%g %g %g %g %g\n" % c for c in corners) + "3 0 1 2\n"
+    write("ply", "text", text)
+    write("mesh_text", "ply", "p" + text)
+    for order, name in (("<", "little"), (">", "big")):
+        data = (ply % f"binary_{name}_endian").encode() + b"".join(struct.pack(order + "5f", *c) for c in corners)
+        write("ply", name, data + struct.pack(order + "B3i", 3, 0, 1, 2))
+        write("mesh_text", name, b"p" + data + struct.pack(order + "B3i", 3, 0, 1, 2))
+    extra = text.replace("element face", "property double quality\nproperty uchar red\nelement face")
+    write("ply", "extra", "\n".join(l + " 0.5 255" if l.count(" ") == 4 and l[0] in "01" else l for l in extra.split("\n")))
+    off = "OFF\n4 2 0 # counts\n0 0 0\n1 0 0\n1 1 0\n\n0 1 0\n3 0 1 2\n3 0 2 3\n"
+    write("off", "two", off)
+    write("off", "uv", "STOFF\n3 1 0\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n")
+    write("off", "quad", "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n")
+    write("mesh_text", "off", "o" + off)
+
+
+def scenes():
+    fabric = {"name": "cloth", "mesh": {"generator": "swatch", "width": 20, "height": 20, "nu": 4, "nv": 4},
+              "pattern": {"builtin": "stockinette"}, "gauge": {"wales": 30}, "material": "yarn",
+              "yarn": {"plies": 3}, "detail": "maps"}
+    scene = {"wale": 1, "units": "mm", "camera": {"position": [0, 0, 60], "look_at": [0, 0, 0]},
+             "film": {"size": [16, 16]}, "integrator": {"spp": 4, "seed": 7},
+             "materials": {"yarn": {"type": "ply", "preset": "wool", "color": "#8040c0"},
+                           "floor": {"type": "coated", "color": [0.2, 0.3, 0.4]}},
+             "fabrics": [fabric],
+             "objects": [{"type": "ground", "material": "floor"}, {"type": "sphere", "center": [0, 0, 0], "radius": 3}],
+             "lights": [{"type": "quad", "position": [0, 50, 50], "look_at": [0, 0, 0], "width": 9, "height": 9,
+                         "radiance": 5},
+                        {"type": "environment", "radiance": [0.3, 0.3, 0.4]}]}
+    write("scene", "whole", json.dumps(scene, indent=1))
+    write("scene", "least", '{"wale": 1}')
+    files = {"wale": 1, "camera": {"type": "orthographic", "position": [0, 0, 1], "height": 0.1},
+             "materials": {"m": {"type": "ply", "file": "yarn.json", "gloss": 0.7}},
+             "fabrics": [{"mesh": "mesh.obj", "pattern": {"file": "tile.json", "period": [0.01, 0.01]},
+                          "repeats": [2, 2], "material": "m", "transform": {"scale": 2, "rotate": [0, 90, 0]}}]}
+    write("scene", "files", "// beside it: the files\n" + json.dumps(files))
+    yarn = {"preset": "silk", "fibre_color": [0.9, 0.8, 0.7], "roughness": 5, "ior": 1.5,
+            "scattering": {"optical_radius": 2.5, "forward_decay": 0.9, "backward_deflection": -30},
+            "fibres": {"count": 90, "twist": -20}}
+    write("material", "fitted", '{"type": "ply"}\n' + json.dumps(yarn))
+    write("material", "joined", '{"type": "ply", "color": "#102030", "translucency": 0.7}\n' + json.dumps(yarn))
+    write("material", "striped", '{"type": "ply", "heather": {"yarn": 0.1}}\n' + json.dumps(
+        {"stripes": [{"color": [1, 0, 0], "length": 0.2}, {"color": "#ffffff", "length": 0.1}], "gloss": 1}))
+    write("material", "direct", '{"type": "ply"}\n{"reflect": [0.1, 0.2, 0.3], "transmit": [0.3, 0.2, 0.1]}')
+    write("overrides", "numbers", "film.size=[32, 16]\nintegrator.spp=2\nfabrics.0.yarn.plies=2\n")
+    write("overrides", "names", "fabrics.cloth.detail=fibres\nlights.sun.intensity=3\nmaterials.yarn.color=#ff8000\n")
+
+
+def images():
+    picture = ["--pattern", "constant:color=.2,.5,.8", "6x5", "3"]
+    for name, how in {"a.exr": ["-d", "half"], "b.exr": ["-d", "float", "--compression", "rle"], "c.hdr": [],
+                      "d.png": ["-d", "uint8"], "e.png": ["-d", "uint16"], "f.jpg": [], "g.tif": ["-d", "uint8"],
+                      "h.tif": ["-d", "float", "--compression", "zip"], "i.bmp": [], "j.tga": []}.items():
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / name
+            subprocess.run(["oiiotool", *picture, *how, "-o", str(file)], check=True)
+            write("image", name, file.read_bytes())
+
+
+patterns()
+meshes()
+scenes()
+images()

@@ -1,0 +1,8 @@
+#include "geom/polygon_soup.h"
+#include "tests/fuzz/expect.h"
+#include "tests/fuzz/meshes.h"
+#include "tests/fuzz/targets.h"
+
+bool wale::fuzz::obj(std::string_view bytes) {
+  return accepted([&] { expect_consistent(triangulate(parse_obj(bytes, "fuzz.obj"), "fuzz.obj")); });
+}
