@@ -246,12 +246,16 @@ void require_whole_off(std::string_view text, const std::string& file) {
     user_error("{}: not a mesh that can be read: put the counts on a line of their own, below the word OFF", file);
   lines.element("line", 0, 1, '#');
   const size_t vertices = lines.count("vertices"), faces = lines.count("faces");
+  lines.count("edges");  // not used, but OpenMesh takes the next word for it
+  lines.end("count");
+  const bool colors = magic.substr(0, magic.size() - 3).find('C') != std::string_view::npos;
   // [ST][C][N][4][n]OFF: each vertex has these numbers in a row, and colours at the end.
   const size_t per_vertex = 3 + (magic.find("ST") != std::string_view::npos ? 2 : 0) +
                             (magic.substr(0, magic.size() - 3).find('N') != std::string_view::npos ? 3 : 0);
   for (size_t i = 0; i < vertices; ++i) {
     lines.element("vertex", i, vertices, '#');
     lines.numbers(per_vertex, "a vertex");
+    if (!colors) lines.end("vertex");
   }
   for (size_t i = 0; i < faces; ++i) {
     lines.element("face", i, faces, '#');

@@ -30,6 +30,7 @@ Stats stats_of(const Scene& scene, const Device& device, const World& world, con
   s.device = device.traits().name;
   s.driver = device.traits().driver;
   s.platform = device.traits().platform;
+  s.kernel_options = device.traits().build_options;
   for (const auto& reason : explain(world, scene.integrator, features))
     if (reason.used) s.features.push_back(reason.feature);
   for (const auto& [name, seconds] : r.counts.program_seconds) s.programs.push_back({name, seconds, false});

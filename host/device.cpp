@@ -1,6 +1,7 @@
 #include "host/device.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "geom/error.h"
 
@@ -50,6 +51,7 @@ DeviceTraits traits_of(const cl::Device& device) {
     t.parallel_builds = false;
     t.build_options = " -cl-opt-disable -DW_PORTABLE";
   }
+  if (const char* more = std::getenv("WALE_KERNEL_OPTIONS")) t.build_options += std::string(" ") + more;
   return t;
 }
 

@@ -20,7 +20,7 @@ struct DeviceTraits {
   uint32_t pool = 1u << 16;     ///< paths in flight
   unsigned local_size = 64;     ///< work-group size of every kernel
   bool parallel_builds = true;  ///< programs may be compiled on several threads at once
-  std::string build_options;    ///< what this driver's compiler needs
+  std::string build_options;    ///< what this driver's compiler needs, then WALE_KERNEL_OPTIONS of the environment
 };
 
 /// Programs already built for a device, by source and options: an edit that changes neither compiles nothing.

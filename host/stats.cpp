@@ -18,7 +18,7 @@ std::string Stats::json() const {
   using nlohmann::ordered_json;
   ordered_json out;
   out["scene"] = scene;
-  out["device"] = {{"name", device}, {"driver", driver}, {"platform", platform}};
+  out["device"] = {{"name", device}, {"driver", driver}, {"platform", platform}, {"kernel_options", kernel_options}};
   out["features"] = features;
   out["programs"] = ordered_json::array();
   for (const auto& p : programs)

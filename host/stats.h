@@ -22,7 +22,7 @@ struct Stats {
     uint64_t count = 0, bytes = 0;
   };
 
-  std::string scene, device, driver, platform;
+  std::string scene, device, driver, platform, kernel_options;
   std::vector<std::string> features;
   std::vector<Program> programs;
   std::map<std::string, Geometry> geometry;     ///< "segments", "triangles", ...

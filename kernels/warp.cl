@@ -1,6 +1,7 @@
 /* The warp of the flat knit on to the base mesh (KNIT21 Algorithm 1): W(x, y, z) = P(b) + z N(b), with P and N the
    barycentric point and the unit interpolated normal of the anchor's triangle. geom/warp.h is its reference in double. */
 #pragma OPENCL FP_CONTRACT OFF
+#include "shared/real.clh"
 #include "shared/wale_types.h"
 
 typedef struct Corners {
@@ -75,7 +76,7 @@ __kernel void warp_normals(__global const WAnchor* anchors, __global const float
   if (!(flag & 2)) tangent += unit_or_zero(vload3(0, v + W_VERTEX_WORDS) - here);
   tangent = unit_or_zero(tangent);
   float3 out = carried - dot(carried, tangent) * tangent;
-  if (!(dot(out, out) > 1e-10f * dot(carried, carried)) || !isfinite(dot(out, out))) {
+  if (!(dot(out, out) > 1e-10f * dot(carried, carried)) || !w_is_finite(dot(out, out))) {
     /* No direction is left: any one square to the ply. */
     const float3 t = dot(tangent, tangent) > 0.0f ? tangent : (float3)(1, 0, 0);
     out = fabs(t.x) < 0.6f ? (float3)(0, t.z, -t.y) : (float3)(-t.z, 0, t.x);

@@ -1,6 +1,7 @@
 /* Each pixel's owner adds its slots in the order of samples: the picture does not depend on the pool's size, on queue
    order or on threads. Sample s belongs to scramble s % W_SCRAMBLES; the spread of the scrambles gives the variance. */
 #include "sampling/sobol.clh"
+#include "shared/real.clh"
 #include "stages/path_state.clh"
 
 __kernel void accumulate(WFrame frame, WCamera camera, uint pixels, __global const float4* radiance,
@@ -13,7 +14,7 @@ __kernel void accumulate(WFrame frame, WCamera camera, uint pixels, __global con
   for (uint k = 0; k < frame.samples_in_wave; ++k) {
     float4 value = radiance[g * frame.samples_in_wave + k];
     value.w = 1.0f;
-    if (!all(isfinite(value))) {
+    if (!w_all_finite(value)) {
       atomic_inc(events + W_EVENT_NAN);
       value = (float4)(0.0f, 0.0f, 0.0f, 1.0f);
     }

@@ -26,7 +26,7 @@ mkdir -p "$build/broken"
 for reader in "${readers[@]}"; do
   mkdir -p "$build/corpus/$reader"
   log="$build/corpus/$reader.txt"
-  if WALE_FUZZ_TARGET=$reader ASAN_OPTIONS=quarantine_size_mb=4:malloc_context_size=8 "$build/tests/fuzz_readers" \
+  if LSAN_OPTIONS="suppressions=$root/tests/leaks.supp:print_suppressions=0" WALE_FUZZ_TARGET=$reader ASAN_OPTIONS=quarantine_size_mb=4:malloc_context_size=8 "$build/tests/fuzz_readers" \
     -max_total_time="$seconds" -max_len=4096 -timeout=5 -rss_limit_mb=2048 -print_final_stats=1 \
     -artifact_prefix="$build/broken/$reader-" "$build/corpus/$reader" "$root/tests/fuzz/corpus/$reader" >"$log" 2>&1; then
     passed=$((passed + 1))

@@ -172,6 +172,16 @@ TEST_F(MeshFiles, TextPlyWithWordsOfAnotherKindIsRefused) {
   expect_contains(refused("ascii 1.0\nrubbish", "0 1 0", "3 0 1 2"), "'rubbish' does not belong");
 }
 
+// A word too many shifts all that follow: a number of a vertex becomes the number of a face's corners.
+TEST_F(MeshFiles, OffWithWordsTooManyIsRefused) {
+  const auto refused = [&](const std::string& text) { return message([&] { read_mesh(write("w.off", text)); }); };
+  const std::string face = "3 0 1 2\n";
+  expect_contains(refused("OFF\n3 1 0 9\n0 0 0\n1 0 0\n0 1 0\n" + face), "'9' is one word too many in this count line");
+  expect_contains(refused("OFF\n3 1\n0 0 0\n1 0 0\n0 1 0\n" + face), "a number of edges is needed");
+  expect_contains(refused("OFF\n3 1 0\n0 0 0\n1 0 0 -9\n0 1 0\n" + face), "'-9' is one word too many");
+  expect_contains(refused("STOFF\n3 1 0\n0 0 0 0 0\n1 0 0\n0 1 0 0 1\n" + face), "5 numbers has only 3");
+}
+
 // OpenMesh reads stale numbers, or loops for minutes, where a text file ends early.
 TEST_F(MeshFiles, TextPlyThatEndsEarly) {
   const std::string head =

@@ -37,14 +37,6 @@ TEST(Lanes, EveryWidthGivesTheSamePicture) {
   }
 }
 
-/// Oclgrind's driver: a simulator that shares no code with PoCL and runs on any machine. Empty when not installed.
-std::filesystem::path oclgrind() {
-  const std::string name = "liboclgrind-rt-icd.so";
-  for (const char* folder : {"/usr/lib/oclgrind", "/usr/local/lib/oclgrind", "/usr/local/lib", "/usr/lib"})
-    if (std::filesystem::exists(std::filesystem::path(folder) / name)) return std::filesystem::path(folder) / name;
-  return {};
-}
-
 TEST(Drivers, OclgrindGivesTheSamePicture) {
   const auto driver = oclgrind();
   if (driver.empty()) GTEST_SKIP() << "Oclgrind is not installed (apt-get install oclgrind)";

@@ -23,6 +23,13 @@ std::string everything_scene(int size, double wales) {
                      size, wales);
 }
 
+std::filesystem::path oclgrind() {
+  const std::string name = "liboclgrind-rt-icd.so";
+  for (const char* folder : {"/usr/lib/oclgrind", "/usr/local/lib/oclgrind", "/usr/local/lib", "/usr/lib"})
+    if (std::filesystem::exists(std::filesystem::path(folder) / name)) return std::filesystem::path(folder) / name;
+  return {};
+}
+
 size_t different_pixels(const Image& a, const Image& b) {
   const size_t pixels = size_t(a.width) * a.height, stride = a.channels.size();
   if (a.width != b.width || a.height != b.height || a.channels != b.channels) return std::max<size_t>(1, pixels);
