@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "geom/charts.h"
 #include "geom/mesh_edges.h"
@@ -45,6 +47,8 @@ dvec2 to_outline(const std::array<dvec2, 3>& t, dvec2 p, dvec2 metric) {
   return best;
 }
 
+constexpr size_t kItemsPerTriangle = 32;
+
 int bucket(double x, double origin, double cell, int size) {
   return static_cast<int>(std::clamp(std::floor((x - origin) / cell), 0.0, size - 1.0));
 }
@@ -83,10 +87,18 @@ ChartLocator::ChartLocator(const BaseMesh& mesh, const Chart& chart)
   size_.y = static_cast<int>(std::clamp(count / size_.x, 1.0, 8192.0));
   cell_ = extent / dvec2(size_);
 
+  // Of triangles with the same UVs the first wins wherever they are asked for: the others need not be looked at.
+  std::vector<uint32_t> triangles;
+  std::set<std::array<double, 6>> seen;
+  for (const uint32_t t : chart.triangles) {
+    const auto& uv = mesh.uv[t];
+    if (uv_area2(uv) != 0 && seen.insert({uv[0].x, uv[0].y, uv[1].x, uv[1].y, uv[2].x, uv[2].y}).second)
+      triangles.push_back(t);
+  }
+
   const auto visit = [&](auto&& emit) {
-    for (const uint32_t t : chart.triangles) {
+    for (const uint32_t t : triangles) {
       const auto& uv = mesh.uv[t];
-      if (uv_area2(uv) == 0) continue;
       const dvec2 lo = glm::min(uv[0], glm::min(uv[1], uv[2])), hi = glm::max(uv[0], glm::max(uv[1], uv[2]));
       const int x0 = bucket(lo.x, origin_.x, cell_.x, size_.x), x1 = bucket(hi.x, origin_.x, cell_.x, size_.x);
       const int y0 = bucket(lo.y, origin_.y, cell_.y, size_.y), y1 = bucket(hi.y, origin_.y, cell_.y, size_.y);
@@ -95,11 +107,19 @@ ChartLocator::ChartLocator(const BaseMesh& mesh, const Chart& chart)
           emit(static_cast<size_t>(y) * static_cast<size_t>(size_.x) + static_cast<size_t>(x), t);
     }
   };
+  // Long thin triangles lie in many buckets: coarser ones keep the lists in proportion to the mesh.
+  for (;;) {
+    size_t items = 0;
+    visit([&](size_t, uint32_t) { ++items; });
+    if (items <= kItemsPerTriangle * triangles.size() || (size_.x == 1 && size_.y == 1)) break;
+    size_ = glm::max(size_ / 2, ivec2(1));
+    cell_ = extent / dvec2(size_);
+  }
   offset_.assign(static_cast<size_t>(size_.x) * static_cast<size_t>(size_.y) + 1, 0);
   visit([&](size_t b, uint32_t) { ++offset_[b + 1]; });
   for (size_t b = 1; b < offset_.size(); ++b) offset_[b] += offset_[b - 1];
   items_.resize(offset_.back());
-  std::vector<uint32_t> next(offset_.begin(), offset_.end() - 1);
+  std::vector<size_t> next(offset_.begin(), offset_.end() - 1);
   visit([&](size_t b, uint32_t t) { items_[next[b]++] = t; });
 }
 
@@ -114,7 +134,7 @@ bool ChartLocator::locate(dvec2 uv, double reach, dvec2 metric, ChartPoint& out)
     if (!(p.x >= chart_.uv_min.x && p.y >= chart_.uv_min.y && p.x <= chart_.uv_max.x && p.y <= chart_.uv_max.y))
       continue;
     const auto [begin, end] = range(bucket(p.x, origin_.x, cell_.x, size_.x), bucket(p.y, origin_.y, cell_.y, size_.y));
-    for (uint32_t i = begin; i < end; ++i) {
+    for (size_t i = begin; i < end; ++i) {
       const auto& t = mesh_.uv[items_[i]];
       const double area2 = uv_area2(t);
       if (!contains(t, p, area2)) continue;
@@ -140,7 +160,7 @@ bool ChartLocator::locate(dvec2 uv, double reach, dvec2 metric, ChartPoint& out)
     for (int y = y0; y <= y1; ++y)
       for (int x = x0; x <= x1; ++x) {
         const auto [begin, end] = range(x, y);
-        for (uint32_t i = begin; i < end; ++i) {
+        for (size_t i = begin; i < end; ++i) {
           const dvec2 offset = to_outline(mesh_.uv[items_[i]], p, metric);
           const double distance = glm::length(offset * metric);
           if (distance > reach) continue;

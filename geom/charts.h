@@ -39,7 +39,8 @@ class ChartLocator {
   const Chart& chart_;
   dvec2 origin_, cell_;
   ivec2 size_;
-  std::vector<uint32_t> offset_, items_;
+  std::vector<size_t> offset_;
+  std::vector<uint32_t> items_;
 };
 
 }  // namespace wale

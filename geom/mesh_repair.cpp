@@ -52,9 +52,20 @@ Border border_of(const BaseMesh& mesh, const TriangleSide& side) {
   return b;
 }
 
-/// The two lie on the two sides of their edge, in space by their sense and, where their UVs agree, in UV too.
+dvec3 face_normal(const BaseMesh& mesh, uint32_t triangle) {
+  const auto& t = mesh.triangle[triangle];
+  return glm::cross(mesh.position[t[1]] - mesh.position[t[0]], mesh.position[t[2]] - mesh.position[t[0]]);
+}
+
+// Cosine of the angle between face normals beyond which two sides lie back to back: averages of theirs would cancel.
+constexpr double kBackToBack = -0.9;
+
+/// The two lie on the two sides of their edge, in space by their sense and, where their UVs agree, in UV too; and they
+/// are no two layers of a doubled sheet, which meet along its border with opposite normals.
 bool continue_each_other(const BaseMesh& mesh, const Border& a, const Border& b) {
   if (a.forward == b.forward) return false;
+  const dvec3 n = face_normal(mesh, a.side.triangle), m = face_normal(mesh, b.side.triangle);
+  if (glm::dot(n, m) < kBackToBack * glm::length(n) * glm::length(m)) return false;
   if (mesh.uv.empty() || a.uv != b.uv) return true;
   return uv_area2(mesh.uv[a.side.triangle]) * uv_area2(mesh.uv[b.side.triangle]) > 0;
 }

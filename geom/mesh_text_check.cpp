@@ -62,7 +62,8 @@ class Lines {
       double value = 0;
       const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
       // What is too small even for a double counts as 0, as it does for a stream.
-      const bool too_small = error == std::errc::result_out_of_range && text.find("e-") != std::string_view::npos;
+      const bool too_small =
+          error == std::errc::result_out_of_range && (text.find("e-") != text.npos || text.find("E-") != text.npos);
       if ((error != std::errc{} && !too_small) || rest != text.data() + text.size() ||
           !(std::abs(value) <= std::numeric_limits<float>::max()))
         user_error("{}:{}: {}: '{}' is not a number that a float holds", file_, number_, what, shown);

@@ -1,6 +1,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "geom/error.h"
 #include "geom/polygon_soup.h"
@@ -25,9 +26,13 @@ struct Line {
     if (*at == '+') ++at;
     double value = 0;
     const auto [rest, error] = std::from_chars(at, end, value);
+    const std::string_view text(at, static_cast<size_t>(rest - at));
     if (error == std::errc::result_out_of_range) {
-      value = std::numeric_limits<double>::infinity();  // refused later, with the vertex number
-    } else if (error != std::errc{}) {
+      // Too small counts as 0; too large is refused later, with the vertex number.
+      value =
+          text.find("e-") != text.npos || text.find("E-") != text.npos ? 0.0 : std::numeric_limits<double>::infinity();
+    } else if (error != std::errc{} ||
+               (rest != end && *rest != ' ' && *rest != '\t' && *rest != '\r' && *rest != '#')) {
       user_error("{}:{}: {} is not a number: '{}'", file, number, what,
                  std::string(at, std::min<size_t>(static_cast<size_t>(end - at), 20)));
     }

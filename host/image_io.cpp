@@ -41,11 +41,12 @@ double dither(int x, int y, int channel) {
 std::string format_of(std::string_view bytes, const std::filesystem::path& file) {
   constexpr std::pair<std::string_view, const char*> kFirstBytes[] = {
       {"v/1\x01", "openexr"}, {"\x89PNG", "png"}, {"\xff\xd8\xff", "jpeg"}, {"#?", "hdr"}, {{"II*\0", 4}, "tiff"},
-      {{"MM\0*", 4}, "tiff"}, {"BM", "bmp"}};
+      {{"MM\0*", 4}, "tiff"}, {"BM", "bmp"}, {"P1", "pnm"}, {"P2", "pnm"}, {"P3", "pnm"}, {"P4", "pnm"}, {"P5", "pnm"},
+      {"P6", "pnm"}, {"PF", "pnm"}, {"Pf", "pnm"}};
   for (const auto& [first, format] : kFirstBytes)
     if (bytes.starts_with(first)) return format;
   if (suffix_of(file) == ".tga") return "targa";  // has no first bytes of its own
-  user_error("{}: cannot be read as an image; formats are EXR, HDR, PNG, JPEG, TIFF, BMP, TGA", file.string());
+  user_error("{}: cannot be read as an image; formats are EXR, HDR, PNG, JPEG, TIFF, BMP, TGA, PNM", file.string());
 }
 
 void check_finite(const Image& image, const std::string& file) {

@@ -11,6 +11,9 @@
 namespace wale {
 namespace {
 
+// Radiance that sums of samples, weighted by less than 1e6, still hold as floats.
+constexpr float kBrightest = 1e30f;
+
 constexpr double kPi = std::numbers::pi;
 
 // The plain mean of the channels: luminance would all but hide a blue light, whose noise is as visible as another's.
@@ -33,7 +36,7 @@ void append_cdf(const std::vector<double>& weights, std::vector<float>& out) {
 
 void require_emission(const std::array<float, 3>& c) {
   for (const float v : c)
-    if (!(v >= 0) || !std::isfinite(v)) user_error("light: radiance {} is not a finite number >= 0", v);
+    if (!(v >= 0 && v <= kBrightest)) user_error("light: radiance {} is no number from 0 to {:.0e}", v, kBrightest);
 }
 
 }  // namespace
@@ -46,9 +49,9 @@ EnvironmentTables environment_tables(const std::vector<float>& rgb, int width, i
   out.texels.resize(brightness.size());
   for (size_t i = 0; i < brightness.size(); ++i) {
     for (int k = 0; k < 3; ++k)
-      if (!(rgb[3 * i + k] >= 0) || !std::isfinite(rgb[3 * i + k]))
-        user_error("environment: texel ({}, {}) holds {}; radiance is a finite number >= 0", i % width, i / width,
-                   rgb[3 * i + k]);
+      if (!(rgb[3 * i + k] >= 0 && rgb[3 * i + k] <= kBrightest))
+        user_error("environment: texel ({}, {}) holds {}; radiance is a number from 0 to {:.0e}", i % width, i / width,
+                   rgb[3 * i + k], kBrightest);
     // The plain mean of the channels: luminance would all but hide a blue light.
     brightness[i] = (double(rgb[3 * i]) + rgb[3 * i + 1] + rgb[3 * i + 2]) / 3;
     out.texels[i] = {rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2], 0};

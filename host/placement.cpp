@@ -28,18 +28,24 @@ void refuse_if_pixels_are_rounded(const WCamera& camera, double distance) {
 }
 
 void refuse_if_rounded(const Fabric& fabric, dvec3 origin) {
-  double thinnest = INFINITY, farthest = 0;
-  for (const PlyRun& run : fabric.runs) thinnest = std::min(thinnest, double(run.radius));
+  double thinnest = INFINITY, farthest = 0, highest = 0;
+  for (const PlyRun& run : fabric.runs) {
+    if (!std::isfinite(run.radius))
+      user_error("fabric \"{}\": its plies have a radius of {} m, which no float holds; check the tile's yarn_radius",
+                 fabric.name, run.radius);
+    thinnest = std::min(thinnest, double(run.radius));
+  }
+  for (const Anchor& anchor : fabric.anchors) highest = std::max(highest, std::abs(double(anchor.height)));
   for (const auto& t : fabric.mesh.triangle)
     for (const uint32_t v : t)
       for (int axis = 0; axis < 3; ++axis)
         farthest = std::max(farthest, std::abs(fabric.mesh.position[v][axis] - origin[axis]));
+  farthest += highest;
   const double rounding = std::ldexp(farthest, -24);  // half the distance of neighbouring floats, at most
   if (rounding > kCoarsestRounding * thinnest)
     user_error(
         "fabric \"{}\": it reaches {:.3g} m from the middle of the scene's fabrics, where floats round by {:.2g} of "
-        "its "
-        "thinnest radius, {:.3g} m; bring the fabrics to within {:.3g} m of their middle, or render them apart",
+        "its thinnest radius, {:.3g} m; bring the fabrics to within {:.3g} m of their middle, or render them apart",
         fabric.name, farthest, rounding / thinnest, thinnest, std::ldexp(kCoarsestRounding * thinnest, 24));
 }
 

@@ -1,5 +1,6 @@
 #include "host/program.h"
 
+#include <cstdlib>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -60,7 +61,8 @@ cl::Program compile(const Device& device, const std::string& source, const std::
   try {
     program.build({device.id()}, options.c_str());
   } catch (const cl::Error&) {
-    device_error("kernels/{}: does not compile for {} with{}\n{}", file, device.traits().name, options,
+    device_error("kernels/{}: does not compile for {} with{}{}\n{}", file, device.traits().name, options,
+                 std::getenv("WALE_KERNEL_OPTIONS") ? " (the environment's WALE_KERNEL_OPTIONS among them)" : "",
                  program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.id()));
   }
   const std::lock_guard lock(device.programs().mutex);

@@ -14,10 +14,11 @@ __kernel void accumulate(WFrame frame, WCamera camera, uint pixels, __global con
   for (uint k = 0; k < frame.samples_in_wave; ++k) {
     float4 value = radiance[g * frame.samples_in_wave + k];
     value.w = 1.0f;
-    if (!w_all_finite(value)) {
+    const uint scramble = (frame.samples_before + k) % W_SCRAMBLES;
+    if (!w_all_finite(out[scramble] + value)) {
       atomic_inc(events + W_EVENT_NAN);
       value = (float4)(0.0f, 0.0f, 0.0f, 1.0f);
     }
-    out[(frame.samples_before + k) % W_SCRAMBLES] += value;
+    out[scramble] += value;
   }
 }

@@ -120,7 +120,7 @@ def images():
     picture = ["--pattern", "constant:color=.2,.5,.8", "6x5", "3"]
     for name, how in {"a.exr": ["-d", "half"], "b.exr": ["-d", "float", "--compression", "rle"], "c.hdr": [],
                       "d.png": ["-d", "uint8"], "e.png": ["-d", "uint16"], "f.jpg": [], "g.tif": ["-d", "uint8"],
-                      "h.tif": ["-d", "float", "--compression", "zip"], "i.bmp": [], "j.tga": []}.items():
+                      "h.tif": ["-d", "float", "--compression", "zip"], "i.bmp": [], "j.tga": [], "k.ppm": ["-d", "uint8"]}.items():
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / name
             subprocess.run(["oiiotool", *picture, *how, "-o", str(file)], check=True)

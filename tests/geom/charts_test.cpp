@@ -52,6 +52,28 @@ TEST(Charts, MirroredUvIsSeen) {
   EXPECT_EQ(validate(mesh).flipped_uv, 0u);
 }
 
+// Every bucket would list every one of them: the lists must stay in proportion to the mesh.
+TEST(Charts, ThousandsOfTrianglesInOnePlaceAreLocatedAsTheFirst) {
+  BaseMesh mesh;
+  mesh.position = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  for (int i = 0; i < 20000; ++i) {
+    mesh.triangle.push_back({0, 1, 2});
+    mesh.uv.push_back({dvec2(0, 0), dvec2(1, 0), dvec2(0, 1)});
+  }
+  compute_normals(mesh);
+  Chart chart;
+  for (uint32_t t = 0; t < mesh.triangle.size(); ++t) chart.triangles.push_back(t);
+  chart.uv_max = {1, 1};
+  const ChartLocator locator(mesh, chart);
+  for (int i = 0; i < 100; ++i) {
+    ChartPoint point;
+    ASSERT_TRUE(locator.locate({0.004 * i, 0.3}, 0.1, {1, 1}, point));
+    EXPECT_EQ(point.triangle, 0u);
+    ASSERT_TRUE(locator.locate({0.004 * i, -0.05}, 0.1, {1, 1}, point));
+    EXPECT_EQ(point.triangle, 0u);
+  }
+}
+
 TEST(Charts, AMoebiusSeamIsNotAJoin) {
   // Last column meets the first one turned over: the translation differs at the two ends of every seam edge.
   BaseMesh mesh = make_tube(0.05, 0.02, 24, 1);

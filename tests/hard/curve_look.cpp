@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/rare_events.h"
 #include "tests/image/picture.h"
 #include "tests/tolerances.h"
 
@@ -155,8 +154,7 @@ Finding look_at_furnace(const Scene& scene, int spp) {
     f.broken = fmt::format("a pixel is not 1 within its noise: p {:.2g}", p);
   f.error_float = 0;
   for (const double mean : mean_rgb(picture.image)) f.error_float = std::max(f.error_float, std::abs(mean - 1));
-  for (const RareEvent& e : kRareEvents)
-    if (e.weight != RareEvent::Weight::note) f.rare += picture.counts.events[e.counter];
+  f.rare = bad_events(picture.counts);
   if (picture.counts.bounce == 0) f.broken = "the camera saw no ply";
   return f;
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/rare_events.h"
 #include "tests/tolerances.h"
 
 namespace wale::test {
@@ -24,13 +23,6 @@ Image relative(Image image, double radiance) {
 
 }  // namespace
 
-uint64_t rare_events(const WaveCounts& counts) {
-  uint64_t sum = 0;
-  for (const RareEvent& e : kRareEvents)
-    if (e.weight != RareEvent::Weight::note) sum += counts.events[e.counter];
-  return sum;
-}
-
 Finding worst_of(const std::vector<Finding>& all) {
   Finding worst;
   worst.error_float = 0;
@@ -46,7 +38,7 @@ Finding worst_of(const std::vector<Finding>& all) {
 Finding look_for_finite(const Picture& picture) {
   Finding found;
   found.trials = picture.counts.paths;
-  found.rare = rare_events(picture.counts);
+  found.rare = bad_events(picture.counts);
   size_t bad = 0;
   for (const float v : picture.image.pixels) bad += !std::isfinite(v);
   found.error_float = double(bad);

@@ -20,6 +20,4 @@ Finding look_at_difference(const Picture& a, const Picture& b);
 /// One finding for several looks: the largest error, the sum of trials and rare events, all that is broken.
 Finding worst_of(const std::vector<Finding>& all);
 
-uint64_t rare_events(const WaveCounts& counts);
-
 }  // namespace wale::test

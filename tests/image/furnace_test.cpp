@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "host/rare_events.h"
 #include "tests/image/picture.h"
 
 namespace wale::test {
@@ -50,10 +49,7 @@ void expect_furnace(const Case& c) {
     const double p = smallest_p(picture.image, 1.0, tests);
     EXPECT_GT(p, sidak(0.01, tests)) << "seed " << seed;
     for (const double mean : mean_rgb(picture.image)) EXPECT_NEAR(mean, 1.0, 0.002) << "seed " << seed;
-    for (const RareEvent& e : kRareEvents)
-      if (e.weight != RareEvent::Weight::note) {
-        EXPECT_EQ(picture.counts.events[e.counter], 0u) << e.name;
-      }
+    EXPECT_EQ(bad_events(picture.counts), 0u);
     EXPECT_GT(picture.counts.bounce, picture.counts.primary / 4) << "the fabric was not hit";
   }
 }

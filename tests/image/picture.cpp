@@ -8,6 +8,7 @@
 
 #include "geom/base_mesh.h"
 #include "host/image.h"
+#include "host/rare_events.h"
 
 namespace wale::test {
 
@@ -32,6 +33,13 @@ Picture take_on(const Device& dev, const Scene& scene, int spp, unsigned seed, u
 
 Picture take(const Scene& scene, int spp, unsigned seed, uint32_t pool, bool aovs) {
   return take_on(device(), scene, spp, seed, pool, aovs);
+}
+
+uint64_t bad_events(const WaveCounts& counts) {
+  uint64_t sum = 0;
+  for (const RareEvent& e : kRareEvents)
+    if (e.weight != RareEvent::Weight::note) sum += counts.events[e.counter];
+  return sum;
 }
 
 Scene empty_scene(double size, int pixels) {

@@ -20,6 +20,9 @@ Picture take(const Scene& scene, int spp, unsigned seed = 0, uint32_t pool = 0, 
 Picture take_on(const Device& device, const Scene& scene, int spp, unsigned seed = 0, uint32_t pool = 0,
                 bool aovs = false);
 
+/// Rare events that are more than notes (host/rare_events.h), all of them together.
+uint64_t bad_events(const WaveCounts& counts);
+
 /// A scene with an orthographic camera that looks down -z at [-size/2, size/2]^2, and no lights.
 Scene empty_scene(double size, int pixels);
 
