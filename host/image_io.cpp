@@ -8,7 +8,9 @@
 #include "geom/error.h"
 #include "geom/text_lines.h"
 #include "host/atomic_file.h"
+#include "host/exr_header.h"
 #include "host/image.h"
+#include "host/png_chunks.h"
 #include "host/schema.h"
 
 namespace wale {
@@ -124,7 +126,10 @@ Image read_image(const std::filesystem::path& file, bool finite) {
 
 Image parse_image(std::string_view bytes, const std::filesystem::path& path, bool finite) {
   const std::string file = path.string();
-  const auto input = OIIO::ImageInput::create(format_of(bytes, path));
+  const std::string format = format_of(bytes, path);
+  if (format == "openexr") require_plausible_exr(bytes, file);
+  if (format == "png") require_whole_png_chunks(bytes, file);
+  const auto input = OIIO::ImageInput::create(format);
   OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size());
   OIIO::ImageSpec spec, how;
   how.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are stored: alpha must not darken them

@@ -149,6 +149,45 @@ TEST(Image, HeaderThatPromisesMoreThanTheFileHoldsIsRefused) {
   EXPECT_NE(message.find("24576 x 24576 pixels do not fit into its 18 bytes"), std::string::npos) << message;
 }
 
+TEST(Image, ExrHeaderThatPromisesMoreThanTheFileHoldsIsRefused) {
+  const TemporaryFolder folder;
+  write_image(ramp(6, 5, {"R", "G", "B"}), folder / "a.exr");
+  const std::string whole = file_text(folder / "a.exr");
+  // The header with the 32-bit number `at` bytes behind the start of the attribute `name` changed.
+  const auto refused = [&](std::string_view name, size_t at, std::string_view number) {
+    std::string bytes = whole;
+    bytes.replace(bytes.find(name) + at, 4, number);
+    return user_message([&] { parse_image(bytes, "a.exr"); });
+  };
+  const std::string_view window{"dataWindow\0box2i\0", 17}, lines{"lineOrder\0lineOrder\0", 20};
+  const std::string_view billion{"\0\0\0\x40", 4};
+  const std::string bytes = std::to_string(whole.size());
+  EXPECT_EQ(refused(window, 17 + 16, billion),
+            "a.exr: 6 x 1073741825 pixels do not fit into its " + bytes + " bytes; is the file cut off?");
+  EXPECT_EQ(
+      refused(window, 17 + 12, billion),
+      "a.exr: 1073741825 x 16 pixels of 3 channels in one piece are too many; write it in smaller tiles or lines");
+  const size_t left = whole.size() - whole.find(lines) - 24;
+  EXPECT_EQ(refused(lines, 20, billion), "a.exr: attribute \"lineOrder\" has 1073741824 bytes, but the file has only " +
+                                             std::to_string(left) + " more; is the file cut off?");
+  for (size_t end = 4; end < whole.find(lines) + 24; ++end)
+    EXPECT_NE(user_message([&] { parse_image(whole.substr(0, end), "a.exr"); }).find("is the file cut off?"),
+              std::string::npos)
+        << end;
+}
+
+TEST(Image, PngChunkLongerThanTheFileIsRefused) {
+  const TemporaryFolder folder;
+  write_image(ramp(6, 5, {"R", "G", "B"}), folder / "a.png");
+  std::string bytes = file_text(folder / "a.png");
+  const size_t at = bytes.find("IDAT");
+  ASSERT_NE(at, std::string::npos);
+  bytes.replace(at - 4, 8, "\x5e\x01\x01\x01tEXt");  // a text of 1.6e9 bytes before the pixels
+  EXPECT_EQ(user_message([&] { parse_image(bytes, "a.png"); }),
+            "a.png: chunk \"tEXt\" has 1577124097 bytes, but the file has only " +
+                std::to_string(bytes.size() - at - 4) + " more; is the file cut off?");
+}
+
 TEST(Image, OtherFormatsAreRefused) {
   const TemporaryFolder folder;
   const std::string message = user_message([&] { read_image(folder.write("a.psd", "8BPS")); });
