@@ -32,7 +32,7 @@ struct MeshReport {
   dvec2 stretch_median{0, 0};       ///< singular values of UV -> space
 };
 
-/// Reads OBJ (in double), PLY or OFF (through OpenMesh, which reads both in float). Lengths are taken as metres. Throws
+/// Reads OBJ and OFF (in double) or PLY (through OpenMesh, in float). Lengths are taken as metres. Throws
 /// a user error naming the file: missing, not a mesh, no faces, NaN or infinite vertices, a face that names no vertex.
 /// Meshes without UV are accepted here (props) and refused by require_uv.
 BaseMesh read_mesh(const std::filesystem::path& file);

@@ -124,8 +124,10 @@ BaseMesh parse_mesh(std::string_view bytes, const std::filesystem::path& path) {
   PolygonSoup soup;
   if (suffix == ".obj") {
     soup = parse_obj(bytes, file);
-  } else if (suffix == ".ply" || suffix == ".off") {
-    (suffix == ".ply" ? require_whole_ply : require_whole_off)(bytes, file);
+  } else if (suffix == ".off") {
+    soup = parse_off(bytes, file);
+  } else if (suffix == ".ply") {
+    require_whole_ply(bytes, file);
     soup = read_with_openmesh(bytes, suffix, file);
   } else {
     user_error("{}: unknown mesh format '{}'; use .obj, .ply or .off", file, suffix);

@@ -25,4 +25,10 @@ BaseMesh triangulate(const PolygonSoup& soup, const std::string& file);
 /// OBJ in double: v, vt, f (polygons, negative indices); every other keyword is skipped. Throws a user error file:line.
 PolygonSoup parse_obj(std::string_view text, const std::string& file);
 
+/// Text OFF in double, with texture coordinates and comments; normals, and colours of vertices and faces, are skipped.
+/// Throws a user error file:line where an element is missing, its line holds too few numbers, or one of them is none
+/// that a float can hold. Not by OpenMesh: it takes a face's colour, or comment, for the faces that follow.
+/// Format: Geomview manual, "OFF: Object File Format".
+PolygonSoup parse_off(std::string_view text, const std::string& file);
+
 }  // namespace wale

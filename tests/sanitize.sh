@@ -31,7 +31,7 @@ count() {
 for program in tests_geom tests_host tests_fuzz; do count "$program" "$build/tests/$program"; done
 for scene in pillow swatch_fibres; do
   count "render_$scene" "$build/wale" render "$root/scenes/$scene.json" --size 24x24 --spp 2 --quiet \
-    --set "fabrics.0.gauge.wales=8" -o "$build/$scene.exr"
+    --set "fabrics.0.gauge.wales=12" -o "$build/$scene.exr"
 done
 echo "$passed passed, $failed failed, 0 skipped"
 ((failed == 0))

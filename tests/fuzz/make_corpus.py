@@ -70,18 +70,19 @@ def meshes():
     corners = [(0, 0, 0, 0, 0), (1, 0, 0, 1, 0), (0, 1, 0, 0, 1)]
     text = ply % "ascii" + "".join("%g %g %g %g %g\n" % c for c in corners) + "3 0 1 2\n"
     write("ply", "text", text)
-    write("mesh_text", "ply", "p" + text)
+    write("mesh_text", "ply", text)
     for order, name in (("<", "little"), (">", "big")):
         data = (ply % f"binary_{name}_endian").encode() + b"".join(struct.pack(order + "5f", *c) for c in corners)
         write("ply", name, data + struct.pack(order + "B3i", 3, 0, 1, 2))
-        write("mesh_text", name, b"p" + data + struct.pack(order + "B3i", 3, 0, 1, 2))
+        write("mesh_text", name, data + struct.pack(order + "B3i", 3, 0, 1, 2))
     extra = text.replace("element face", "property double quality\nproperty uchar red\nelement face")
     write("ply", "extra", "\n".join(l + " 0.5 255" if l.count(" ") == 4 and l[0] in "01" else l for l in extra.split("\n")))
     off = "OFF\n4 2 0 # counts\n0 0 0\n1 0 0\n1 1 0\n\n0 1 0\n3 0 1 2\n3 0 2 3\n"
     write("off", "two", off)
     write("off", "uv", "STOFF\n3 1 0\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n")
+    write("off", "colors", "STCNOFF\n3 2 0\n0 0 0 0 0 1 255 0 0 0 0\n1 0 0 0 0 1 7 1 0\n0 1 0 0 0 1 0 1\n"
+          "3 0 1 2 1 0 0\n3 0 2 1 # back\n")
     write("off", "quad", "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n")
-    write("mesh_text", "off", "o" + off)
 
 
 def scenes():
