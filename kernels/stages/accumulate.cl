@@ -4,6 +4,9 @@
 #include "shared/real.clh"
 #include "stages/path_state.clh"
 
+/* A sample so bright that the sum of as many would overflow counts as not finite. */
+#define W_SUM_HEADROOM 1e5f
+
 __kernel void accumulate(WFrame frame, WCamera camera, uint pixels, __global const float4* radiance,
                          __global float4* film, __global uint* events) {
   const uint g = get_global_id(0);
@@ -14,11 +17,10 @@ __kernel void accumulate(WFrame frame, WCamera camera, uint pixels, __global con
   for (uint k = 0; k < frame.samples_in_wave; ++k) {
     float4 value = radiance[g * frame.samples_in_wave + k];
     value.w = 1.0f;
-    const uint scramble = (frame.samples_before + k) % W_SCRAMBLES;
-    if (!w_all_finite(out[scramble] + value)) {
+    if (!w_all_finite(value * W_SUM_HEADROOM)) {
       atomic_inc(events + W_EVENT_NAN);
       value = (float4)(0.0f, 0.0f, 0.0f, 1.0f);
     }
-    out[scramble] += value;
+    out[(frame.samples_before + k) % W_SCRAMBLES] += value;
   }
 }
