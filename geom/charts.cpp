@@ -4,28 +4,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "geom/groups.h"
 #include "geom/mesh_edges.h"
 
 namespace wale {
 namespace {
-
-/// Union-find with the lowest index as representative, so that the order of charts never depends on union order.
-class Groups {
- public:
-  explicit Groups(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  uint32_t find(uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(uint32_t a, uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<uint32_t> parent_;
-};
 
 /// Deviation of a seam from a pure translation that is still a join, relative to the translation. Files with six
 /// decimals reach 2e-6; 1e-5 of a sleeve's girth is a hundredth of a ply radius.
