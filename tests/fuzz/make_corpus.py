@@ -107,12 +107,11 @@ def scenes():
     write("scene", "files", "// beside it: the files\n" + json.dumps(files))
     fabric = {"mesh": {"file": "mesh.obj"}, "pattern": "tile.json", "uv_metres": True, "material": "m", "detail": "paper",
               "color_image": {"file": "colors.png", "map": "stitches", "origin": [1, 2], "size": [8, 8]}}
-    write("scene", "rest", json.dumps(
-        {"wale": 1, "materials": {"m": {"type": "ply", "plies": ["#800000", [0.1, 0.2, 0.3]]}, "d": {"type": "diffuse"}},
-         "fabrics": [fabric],
-         "objects": [{"type": "mesh", "mesh": "mesh.obj", "material": "d", "transform": {"translate": [0, 0, 1]}}],
+    write("scene", "stitches", json.dumps({"wale": 1, "materials": {"m": {"type": "ply"}}, "fabrics": [fabric]}, indent=2))
+    write("scene", "shapes", json.dumps(
+        {"wale": 1, "objects": [{"type": "mesh", "mesh": "mesh.obj", "transform": {"translate": [0, 0, 1]}}],
          "lights": [{"type": "sphere", "position": [0, 1, 0], "radius": 0.1, "radiance": 2},
-                    {"type": "mesh", "mesh": "mesh.obj", "transform": {"scale": 2}, "radiance": [1, 1, 1]}]}))
+                    {"type": "mesh", "mesh": "mesh.obj", "radiance": [1, 1, 1]}]}, indent=2))
     yarn = {"preset": "silk", "fibre_color": [0.9, 0.8, 0.7], "roughness": 5, "ior": 1.5,
             "scattering": {"optical_radius": 2.5, "forward_decay": 0.9, "backward_deflection": -30},
             "fibres": {"count": 90, "twist": -20}}
