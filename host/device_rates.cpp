@@ -1,6 +1,7 @@
 #include "host/device_rates.h"
 
 #include <algorithm>
+#include <ctime>
 #include <vector>
 
 #include "host/program.h"
@@ -18,10 +19,15 @@ constexpr double kOperations = 4e8;           // of one launch on a CPU: about 1
 double least_seconds(const Device& device, const cl::Kernel& kernel, size_t items) {
   std::vector<double> seconds;
   for (int k = 0; k < kLaunches + 1; ++k) {
+    const std::clock_t start = std::clock();
     cl::Event event;
     device.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device.global(items), device.local(), nullptr, &event);
     event.wait();
-    if (k > 0) seconds.push_back(device_seconds(event));  // the first launch only warms up
+    if (k == 0) continue;  // only warms up
+    // Other programs on the machine take a CPU device's time, not its CPU time.
+    seconds.push_back(device.traits().cpu
+                          ? double(std::clock() - start) / CLOCKS_PER_SEC / device.traits().compute_units
+                          : device_seconds(event));
   }
   return std::max(*std::min_element(seconds.begin(), seconds.end()), 1e-9);  // a floor is what is possible
 }

@@ -17,12 +17,11 @@ void WaveCounts::add_wave(uint32_t wave_paths) {
     stages[kernel].items += wave_paths;
 }
 
-void WaveCounts::add_launch(const std::string& kernel, const cl::Event& event, bool camera_rays) {
-  const double seconds = device_seconds(event);
+void WaveCounts::add_launch(const std::string& kernel, double launch_seconds, bool camera_rays) {
   StageTime& stage = stages[kernel];
-  stage.seconds += seconds;
+  stage.seconds += launch_seconds;
   ++stage.launches;
-  if (camera_rays) primary_seconds += seconds;
+  if (camera_rays) primary_seconds += launch_seconds;
 }
 
 double device_seconds(const cl::Event& event) {

@@ -9,7 +9,8 @@
 
 namespace wale {
 
-/// Seconds and launches of one kernel, from the device's own clock, and the items that it worked on: paths, hits, rays.
+/// Seconds and launches of one kernel, by the device's clock unless said, and the items that it worked on: paths, hits,
+/// rays.
 struct StageTime {
   double seconds = 0;
   size_t launches = 0;
@@ -30,7 +31,7 @@ struct WaveCounts {
   /// Items of the stages that every path of a wave goes through once.
   void add_wave(uint32_t wave_paths);
   /// A launch that is over.
-  void add_launch(const std::string& kernel, const cl::Event& event, bool camera_rays);
+  void add_launch(const std::string& kernel, double launch_seconds, bool camera_rays);
 };
 
 /// Seconds from start to end of a command of a profiling queue, by the device's clock.

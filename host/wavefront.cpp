@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <future>
 
 #include "geom/error.h"
@@ -149,9 +150,11 @@ uint32_t Wavefront::padded_pixels() const {
 
 void Wavefront::launch(const std::string& name, size_t items, bool camera_rays) {
   cl::Event event;
+  const std::clock_t start = std::clock();
   device_.queue().enqueueNDRangeKernel(kernel(name), cl::NullRange, device_.global(items), device_.local(), nullptr,
                                        &event);
-  pending_.push_back({name, event, camera_rays});
+  if (count_cpu_time_) device_.queue().finish();
+  pending_.push_back({name, event, camera_rays, double(std::clock() - start) / CLOCKS_PER_SEC});
 }
 
 void Wavefront::launch_intersect(const Buffer<uint32_t>& list, uint32_t count_index, uint32_t depth, size_t bound) {
@@ -260,7 +263,11 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
 }
 
 void Wavefront::harvest_events() {
-  for (const Launch& launch : pending_) counts_.add_launch(launch.kernel, launch.event, launch.camera_rays);
+  for (const Launch& launch : pending_)
+    counts_.add_launch(
+        launch.kernel,
+        count_cpu_time_ ? launch.cpu_seconds / device_.traits().compute_units : device_seconds(launch.event),
+        launch.camera_rays);
   pending_.clear();
 }
 

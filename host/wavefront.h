@@ -30,6 +30,10 @@ class Wavefront {
   /// Traces `samples` samples from `first_sample` of pixels [first_pixel, first_pixel + pixels).
   void trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint32_t first_sample, uint32_t samples);
 
+  /// Waits for every launch and counts the CPU seconds of all threads over the compute units as its time, which other
+  /// programs on the machine disturb less than the clock; for CPU devices.
+  void count_cpu_time(bool yes) { count_cpu_time_ = yes; }
+
   /// While set, trace() reads back the rays that it sends: its own times then say little. Null ends it.
   void record(RayRecord* record) { record_ = record; }
   /// Puts recorded rays into the path state; the pool must be as large as that of the wavefront they come from.
@@ -76,10 +80,12 @@ class Wavefront {
     std::string kernel;
     cl::Event event;
     bool camera_rays;
+    double cpu_seconds;
   };
   std::vector<Launch> pending_;
   WaveCounts counts_;
   RayRecord* record_ = nullptr;
+  bool count_cpu_time_ = false;
   uint32_t waves_ = 0;
 
   Buffer<w_float4> ray_o_, ray_l_, ray_d_, weight_, hit_, radiance_, shadow_o_, shadow_l_, shadow_d_, shadow_c_;

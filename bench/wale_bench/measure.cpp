@@ -65,6 +65,7 @@ FabricResult measure(const Device& device, const Workload& workload, const Loade
   render_options.record = &record;
   const uint32_t pool = render(device, world, *scene, integrator, render_options).pool;
   render_options.record = nullptr;
+  render_options.count_cpu_time = device.traits().cpu;
   step();
 
   const SceneDevice opaque = opaque_scene(device, world);
@@ -95,8 +96,10 @@ FabricResult measure(const Device& device, const Workload& workload, const Loade
   TraversalCost path, shadow;
   uint64_t path_rays = 0;
   for (const RayRow& row : attenuated) {
-    for (size_t k = 0; k < row.device.size(); ++k)
-      if (row.device[k] > 0) out.replay_over_render[row.name()].push_back(in_render[row.name()][k] / row.device[k]);
+    for (size_t k = 0; k < row.device.size(); ++k) {
+      const double alone = device.traits().cpu ? row.cpu[k] / device.traits().compute_units : row.device[k];
+      if (alone > 0) out.replay_over_render[row.name()].push_back(in_render[row.name()][k] / alone);
+    }
     if (row.kind == RayKind::shadow) {
       shadow = {row.bytes, row.operations};
     } else {

@@ -26,7 +26,8 @@ struct FabricResult {
 
   uint64_t samples = 0;                         ///< paths of one render
   std::vector<double> render_wall, render_cpu;  ///< seconds
-  /// By kind: Mrays/s of the replay over those of the render right before it, both by the device's clock.
+  /// By kind: Mrays/s of the replay over those of the render right before it; both by the device's clock, or on a CPU
+  /// device by CPU time.
   std::map<std::string, std::vector<double>> replay_over_render;
   double ns_per_vertex = 0;
   std::vector<StageProfile> stages;
