@@ -11,7 +11,7 @@ struct DeviceRates {
 };
 
 /// Runs a copy and chains of multiply-adds for a fraction of a second; the best of seven launches, by the device's
-/// clock.
+/// clock, or on a CPU device by CPU time over its compute units.
 DeviceRates measure_rates(const Device& device);
 
 }  // namespace wale
