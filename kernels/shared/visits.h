@@ -9,9 +9,9 @@
 #define W_COUNTER_COUNT (W_EVENT_COUNT + 4)
 #ifdef __OPENCL_VERSION__
 #ifdef W_COUNT_VISITS
-#define W_VISIT(scene, what) atomic_inc((scene)->counters + (what))
+#define W_COUNT(scene, what) atomic_inc((scene)->counters + (what))
 #else
-#define W_VISIT(scene, what)
+#define W_COUNT(scene, what)
 #endif
 #endif
 #endif
