@@ -24,7 +24,7 @@ std::vector<StageProfile> profile_stages(const Features& features, const WaveCou
     if (p.launches == 0) continue;
     const TraversalCost none, &traversal = p.stage == "intersect" ? path : p.stage == "connect" ? shadow : none;
     p.bytes_per_item = stage.bytes_per_item + traversal.bytes;
-    p.operations_per_item = traversal.operations;
+    p.operations_per_item = stage.operations_per_item + traversal.operations;
     if (rates.bytes_per_second > 0 && rates.operations_per_second > 0)
       p.floor_ns = 1e9 * std::max(p.bytes_per_item / rates.bytes_per_second,
                                   p.operations_per_item / rates.operations_per_second);

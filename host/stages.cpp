@@ -27,6 +27,10 @@ constexpr double kShadowRay = kRay + kVec;
 constexpr double kLeafPart = W_LEAF_HEADER * kWord + 4 * 3 * kWord + 2 * W_VERTEX_WORDS * kWord;
 constexpr double kTriangle = 20 * kWord;
 
+// Additions and multiplications of one hit with one light sample, as `oclgrind --inst-counts` counts them (a dot
+// product as five, a fused multiply-add as two), and 20 for each of its 39 exponentials, logarithms and angles.
+constexpr double kShadePlyOperations = 1000 + 39 * 20;
+
 }  // namespace
 
 std::vector<Stage> wavefront_stages(const Features& f) {
@@ -42,7 +46,12 @@ std::vector<Stage> wavefront_stages(const Features& f) {
        true,
        f.environment ? "paths that leave gather the environment" : "paths that leave end",
        2 * kWord + (f.environment ? 4 * kVec : 0)},
-      {"stages/shade_ply.cl", {"shade_ply"}, f.plies, f.plies ? "plies" : "no ply is shown", shade + kLeafPart},
+      {"stages/shade_ply.cl",
+       {"shade_ply"},
+       f.plies,
+       f.plies ? "plies" : "no ply is shown",
+       shade + kLeafPart,
+       kShadePlyOperations},
       {"stages/shade_fibre.cl",
        {"shade_fibre"},
        f.fibres,
