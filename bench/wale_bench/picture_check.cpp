@@ -66,7 +66,7 @@ std::string reference_source(const TileMeans& tiles, const std::string& device) 
   for (const auto* values : {&tiles.mean, &tiles.error}) {
     text += "    {";
     for (size_t i = 0; i < values->size(); ++i)
-      text += fmt::format("{}{:.6e}f", i == 0 ? "" : i % 9 == 0 ? ",\n     " : ", ", (*values)[i]);
+      text += fmt::format("{}{:.6e}f", i == 0 ? "" : i % 7 == 0 ? ",\n     " : ", ", (*values)[i]);
     text += values == &tiles.mean ? "},\n" : "}};\n";
   }
   return text + "  // clang-format on\n  return tiles;\n}\n\n}  // namespace wale::bench\n";
