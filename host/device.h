@@ -29,6 +29,10 @@ struct ProgramCache {
   std::map<std::string, cl::Program> programs;
 };
 
+/// Numbers of the devices that `--device` names: "all", or numbers of Device::list() with commas between them. Throws a
+/// user error for anything else and for a device named twice.
+std::vector<unsigned> device_numbers(const std::string& text);
+
 /// An OpenCL device with its context and one in-order queue. Passed explicitly, never global.
 class Device {
  public:
@@ -42,6 +46,7 @@ class Device {
   const cl::Context& context() const { return context_; }
   const cl::CommandQueue& queue() const { return queue_; }
   const cl::Device& id() const { return device_; }
+  unsigned number() const { return number_; }  ///< of list()
   ProgramCache& programs() const { return *programs_; }
 
   /// Rounds a global size up to a multiple of the work-group size.
@@ -50,6 +55,7 @@ class Device {
 
  private:
   DeviceTraits traits_;
+  unsigned number_ = 0;
   cl::Device device_;
   cl::Context context_;
   cl::CommandQueue queue_;

@@ -8,6 +8,7 @@
 
 #include "host/device.h"
 #include "host/features.h"
+#include "host/film_device.h"
 #include "host/scene_device.h"
 
 namespace wale {
@@ -18,13 +19,15 @@ struct StageTime {
   size_t launches = 0;
 };
 
-/// What the wavefront counted.
+/// What the wavefront counted. Of several devices: sums, seconds too; the longest path of all.
 struct WaveCounts {
   uint64_t primary = 0, bounce = 0, shadow = 0, paths = 0;
   uint32_t deepest = 0;
   std::array<uint32_t, W_EVENT_COUNT> events{};
   std::map<std::string, StageTime> stages;
   std::map<std::string, double> program_seconds;
+
+  WaveCounts& operator+=(const WaveCounts& other);
 };
 
 /// Film and path state on the device, and the kernels of one set of features. One wave traces a block of pixels times a
@@ -36,22 +39,15 @@ class Wavefront {
   Wavefront(const Device& device, const SceneDevice& scene, const Features& features, const WCamera& camera,
             uint32_t pool, const std::filesystem::path& kernel_dir = {});
 
-  /// Pixel numbers run along 8 x 8 tiles: this many, of which those outside the picture are skipped.
-  uint32_t padded_pixels() const;
   uint32_t pool() const { return pool_; }
 
-  /// Traces `samples` samples from `first_sample` of pixels [first_pixel, first_pixel + pixels).
+  /// Traces `samples` samples from `first_sample` of pixels [first_pixel, first_pixel + pixels) and adds them to the
+  /// film; pixel numbers run along 8 x 8 tiles (padded_pixels), those outside the picture are skipped.
   void trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint32_t first_sample, uint32_t samples);
 
-  /// Sums per pixel and scramble: width*height*8 of (r, g, b, count).
-  std::vector<w_float4> read_film() const { return film_.read(device_); }
-  /// Sums per pixel of the four feature vectors, and ply numbers; empty without the feature.
-  std::vector<w_float4> read_aov() const;
-  std::vector<uint32_t> read_ply() const;
+  FilmDevice& film() { return film_; }
   WaveCounts counts() const;
-  uint64_t bytes() const { return bytes_; }
-
-  static constexpr int kScrambles = 8;
+  uint64_t bytes() const { return bytes_ + film_.bytes(); }
 
  private:
   void build_programs(const std::filesystem::path& kernel_dir);
@@ -76,8 +72,8 @@ class Wavefront {
   Buffer<std::array<float, 2>> hit_uv_;
   Buffer<uint32_t> mask_, active_[2], ply_list_, surface_list_, miss_list_, fibre_list_, shadow_list_, spare_list_,
       chunk_, queue_counts_;
-  Buffer<w_float4> film_, aov_, aov_film_;
-  Buffer<uint32_t> ply_film_;
+  Buffer<w_float4> aov_;
+  FilmDevice film_;
 };
 
 }  // namespace wale
