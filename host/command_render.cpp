@@ -9,6 +9,7 @@
 #include "host/commands.h"
 #include "host/progress.h"
 #include "host/rare_events.h"
+#include "host/rehearsal.h"
 #include "host/render.h"
 #include "host/stop.h"
 
@@ -32,6 +33,16 @@ class Devices {
     for (const unsigned number : device_numbers(text)) open_.push_back(Device::open(number));
   }
 
+  // Programs are compiled while the scene is knitted.
+  void rehearse(const Scene& scene, bool aovs, const std::filesystem::path& kernel_dir) {
+    for (const Device& device : open_) {
+      const Features features = foresee(scene, aovs, int(device.traits().lanes));
+      auto stages = geometry_stages(features);
+      for (auto& stage : wavefront_stages(features)) stages.push_back(std::move(stage));
+      rehearsals_.push_back(std::make_unique<Rehearsal>(device, stages, features.options(), kernel_dir));
+    }
+  }
+
   // At the same time: each device warps, packs and builds its own tree, as its rounding may be its own.
   void upload(const World& world, LocalStage stage) {
     std::vector<std::future<std::unique_ptr<SceneDevice>>> scenes;
@@ -48,6 +59,7 @@ class Devices {
   std::vector<Device> open_;
   std::vector<std::unique_ptr<SceneDevice>> scenes_;
   std::vector<RenderDevice> list_;
+  std::vector<std::unique_ptr<Rehearsal>> rehearsals_;
 };
 
 // Wall seconds of the steps that lead to the first sample.
@@ -138,6 +150,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   if (!args.stats.empty()) require_writable_path(args.stats);
   start.step("read the scene");
   Devices devices(args.device);
+  devices.rehearse(scene, aovs, args.kernel_dir);
   start.step("open devices");
   catch_stop_signals();
 

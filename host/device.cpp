@@ -45,10 +45,12 @@ DeviceTraits traits_of(const cl::Device& device) {
   // Explicit vectors pay on CPUs; GPUs run one ray per work-item in scalar code.
   const unsigned native = device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
   t.lanes = !t.cpu ? 1 : native >= 16 ? 16 : native >= 8 ? 8 : 1;
-  t.pool = t.cpu ? 1u << 16 : 1u << 21;
+  // One kernel variant of PoCL's for launches of a whole pool and for the shorter ones that follow.
+  t.pool = t.cpu ? Device::kLargeGrid - 512 : 1u << 21;
   t.local_size = std::min<size_t>(64, device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>());
   // Oclgrind's compiler shares one LLVM context between threads and crashes when two of them build; its interpreter
   // knows no intrinsic that inlining and optimising make (llvm.experimental.noalias.scope.decl, llvm.bitreverse).
+  t.compiles_at_launch = t.platform.find("Portable Computing Language") != std::string::npos;
   if (t.platform.find("Oclgrind") != std::string::npos) {
     t.parallel_builds = false;
     t.build_options = " -cl-opt-disable -DW_PORTABLE";

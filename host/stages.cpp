@@ -2,6 +2,12 @@
 
 namespace wale {
 
+std::vector<Stage> geometry_stages(const Features& f) {
+  const bool curves = f.plies || f.fibres;
+  return {{"warp.cl", {"warp_points", "warp_normals"}, curves, "plies on the base mesh", true},
+          {"pack.cl", {"pack_leaves"}, curves, "leaves and bounds", true}};
+}
+
 std::vector<Stage> wavefront_stages(const Features& f) {
   const bool surfaces = f.triangles || f.spheres;
   return {

@@ -12,7 +12,11 @@ struct Stage {
   std::vector<std::string> kernels;
   bool used = true;
   std::string because;
+  bool before_rays = false;  ///< runs once, on the scene's geometry; has no variants
 };
+
+/// What makes the scene's plies ready to be traced.
+std::vector<Stage> geometry_stages(const Features& features);
 
 /// All stages in the order of a bounce; those that are not used are neither compiled nor launched.
 std::vector<Stage> wavefront_stages(const Features& features);
