@@ -33,16 +33,6 @@ class Devices {
     for (const unsigned number : device_numbers(text)) open_.push_back(Device::open(number));
   }
 
-  // Programs are compiled while the scene is knitted.
-  void rehearse(const Scene& scene, bool aovs, const std::filesystem::path& kernel_dir) {
-    for (const Device& device : open_) {
-      const Features features = foresee(scene, aovs, int(device.traits().lanes));
-      auto stages = geometry_stages(features);
-      for (auto& stage : wavefront_stages(features)) stages.push_back(std::move(stage));
-      rehearsals_.push_back(std::make_unique<Rehearsal>(device, stages, features.options(), kernel_dir));
-    }
-  }
-
   // At the same time: each device warps, packs and builds its own tree, as its rounding may be its own.
   void upload(const World& world, LocalStage stage) {
     std::vector<std::future<std::unique_ptr<SceneDevice>>> scenes;
@@ -53,13 +43,13 @@ class Devices {
     for (size_t d = 0; d < open_.size(); ++d) list_.push_back({&open_[d], scenes_[d].get()});
   }
 
+  const std::vector<Device>& open() const { return open_; }
   const std::vector<RenderDevice>& list() const { return list_; }
 
  private:
   std::vector<Device> open_;
   std::vector<std::unique_ptr<SceneDevice>> scenes_;
   std::vector<RenderDevice> list_;
-  std::vector<std::unique_ptr<Rehearsal>> rehearsals_;
 };
 
 // Wall seconds of the steps that lead to the first sample.
@@ -149,8 +139,15 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   }
   if (!args.stats.empty()) require_writable_path(args.stats);
   start.step("read the scene");
+  // Programs are compiled while the scene is knitted.
+  Rehearsal rehearsal(args.device, [&](const DeviceTraits& traits) {
+    const Features features = foresee(scene, aovs, int(traits.lanes));
+    auto stages = geometry_stages(features);
+    for (auto& stage : wavefront_stages(features)) stages.push_back(std::move(stage));
+    return Rehearsal::Plan{stages, features.options(), args.kernel_dir};
+  });
   Devices devices(args.device);
-  devices.rehearse(scene, aovs, args.kernel_dir);
+  rehearsal.begin(devices.open());
   start.step("open devices");
   catch_stop_signals();
 

@@ -48,10 +48,10 @@ void expand(const std::string& text, const std::string& file, const std::filesys
   }
 }
 
-ProgramText with_options(const Device& device, const std::string& file, std::string source, std::string options) {
-  options += " -cl-std=CL1.2" + device.traits().build_options;
-  if (device.traits().compiles_at_launch) options += " -cl-kernel-arg-info";  // a Rehearsal asks for it
-  if (options.find("W_LANES") == std::string::npos) options += fmt::format(" -DW_LANES={}", device.traits().lanes);
+ProgramText with_options(const DeviceTraits& traits, const std::string& file, std::string source, std::string options) {
+  options += " -cl-std=CL1.2" + traits.build_options;
+  if (traits.compiles_at_launch) options += " -cl-kernel-arg-info";  // a Rehearsal asks for it
+  if (options.find("W_LANES") == std::string::npos) options += fmt::format(" -DW_LANES={}", traits.lanes);
   return {file, std::move(source), std::move(options)};
 }
 
@@ -75,9 +75,9 @@ std::string expand_kernel_source(const std::string& file, const std::filesystem:
   return out;
 }
 
-ProgramText program_text(const Device& device, const std::string& file, const std::string& options,
+ProgramText program_text(const DeviceTraits& traits, const std::string& file, const std::string& options,
                          const std::filesystem::path& kernel_dir) {
-  return with_options(device, file, expand_kernel_source(file, kernel_dir), options);
+  return with_options(traits, file, expand_kernel_source(file, kernel_dir), options);
 }
 
 cl::Program build_now(const Device& device, const ProgramText& text) {
@@ -101,14 +101,14 @@ cl::Program build_now(const Device& device, const ProgramText& text) {
 
 cl::Program build_program(const Device& device, const std::string& file, const std::string& options,
                           const std::filesystem::path& kernel_dir) {
-  return compile(device, program_text(device, file, options, kernel_dir));
+  return compile(device, program_text(device.traits(), file, options, kernel_dir));
 }
 
 cl::Program build_program_text(const Device& device, const std::string& text, const std::string& options) {
   std::set<std::string> done;
   std::string out;
   expand(text, "test.cl", {}, done, out);
-  return compile(device, with_options(device, "test.cl", out, options));
+  return compile(device, with_options(device.traits(), "test.cl", out, options));
 }
 
 }  // namespace wale

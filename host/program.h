@@ -15,7 +15,7 @@ struct ProgramText {
   std::string file, source, options;
   std::string key() const { return options + '\n' + source; }
 };
-ProgramText program_text(const Device& device, const std::string& file, const std::string& options = "",
+ProgramText program_text(const DeviceTraits& traits, const std::string& file, const std::string& options = "",
                          const std::filesystem::path& kernel_dir = {});
 
 /// Compiles a program, or takes it from the device's cache. Throws a device error that names the file with the build
