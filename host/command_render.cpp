@@ -7,6 +7,7 @@
 #include "geom/error.h"
 #include "host/atomic_file.h"
 #include "host/commands.h"
+#include "host/memory_needs.h"
 #include "host/progress.h"
 #include "host/rare_events.h"
 #include "host/rehearsal.h"
@@ -34,7 +35,13 @@ class Devices {
   }
 
   // At the same time: each device warps, packs and builds its own tree, as its rounding may be its own.
-  void upload(const World& world, LocalStage stage) {
+  void upload(const World& world, const IntegratorScene& integrator, bool aovs) {
+    for (const Device& device : open_) {
+      const DeviceTraits& traits = device.traits();
+      const Features features = analyse(world, integrator, aovs, int(traits.lanes));
+      require_memory(device, memory_needs(world, features, integrator.pool ? integrator.pool : traits.pool, traits));
+    }
+    const LocalStage stage = local_stage(integrator);
     std::vector<std::future<std::unique_ptr<SceneDevice>>> scenes;
     for (const Device& device : open_)
       scenes.push_back(std::async(open_.size() > 1 ? std::launch::async : std::launch::deferred,
@@ -160,7 +167,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   if (!args.quiet)
     for (const auto& note : world.notes) fmt::print(stderr, "note: {}\n", note);
   start.step("knit");
-  devices.upload(world, local_stage(scene.integrator));
+  devices.upload(world, scene.integrator, aovs);
   start.step("warp and tree");
   RenderOptions options;
   options.spp = args.spp > 0 ? args.spp : scene.integrator.spp;

@@ -19,6 +19,9 @@ constexpr Named kCodes[] = {
     {CL_OUT_OF_RESOURCES, "CL_OUT_OF_RESOURCES", "; a kernel failed, or the device has too little memory free"},
     {CL_OUT_OF_HOST_MEMORY, "CL_OUT_OF_HOST_MEMORY", kMemory},
     {CL_INVALID_BUFFER_SIZE, "CL_INVALID_BUFFER_SIZE", kMemory},
+    {CL_INVALID_KERNEL_NAME, "CL_INVALID_KERNEL_NAME",
+     "; the driver's kernel cache may be damaged: remove it (PoCL: ~/.cache/pocl, or POCL_CACHE_DIR)"},
+    {CL_INVALID_BUILD_OPTIONS, "CL_INVALID_BUILD_OPTIONS", ""},
     {CL_INVALID_KERNEL_ARGS, "CL_INVALID_KERNEL_ARGS", ""},
     {CL_INVALID_WORK_GROUP_SIZE, "CL_INVALID_WORK_GROUP_SIZE", ""},
 };

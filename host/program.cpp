@@ -6,6 +6,9 @@
 #include <sstream>
 
 #include "geom/error.h"
+#include "host/build_log.h"
+#include "host/device_fault.h"
+#include "host/driver_crash.h"
 #include "host/kernel_sources.h"
 
 namespace wale {
@@ -87,13 +90,18 @@ cl::Program build_now(const Device& device, const ProgramText& text) {
     const auto found = device.programs().programs.find(key);
     if (found != device.programs().programs.end()) return found->second;
   }
+  const DriverCall guard;
   cl::Program program(device.context(), text.source);
   try {
     program.build({device.id()}, text.options.c_str());
-  } catch (const cl::Error&) {
-    device_error("kernels/{}: does not compile for {} with{}{}\n{}", text.file, device.traits().name, text.options,
-                 std::getenv("WALE_KERNEL_OPTIONS") ? " (the environment's WALE_KERNEL_OPTIONS among them)" : "",
-                 program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.id()));
+  } catch (const cl::Error& e) {
+    const std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.id());
+    const std::string& name = device.traits().name;
+    const std::string file = keep_build_log(text.file + " " + name, log + "\noptions: " + text.options + "\n");
+    device_error("kernels/{}: does not compile for {}{}: {}; {}{}", text.file, name,
+                 std::getenv("WALE_KERNEL_OPTIONS") ? " with the environment's WALE_KERNEL_OPTIONS" : "",
+                 one_line(log.empty() ? opencl_fault(e) : first_error(log)),
+                 file.empty() ? "the log could not be kept" : "the whole log is in ", file);
   }
   const std::lock_guard lock(device.programs().mutex);
   return device.programs().programs.emplace(key, program).first->second;

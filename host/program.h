@@ -18,8 +18,8 @@ struct ProgramText {
 ProgramText program_text(const DeviceTraits& traits, const std::string& file, const std::string& options = "",
                          const std::filesystem::path& kernel_dir = {});
 
-/// Compiles a program, or takes it from the device's cache. Throws a device error that names the file with the build
-/// log. Does not wait for a Rehearsal.
+/// Compiles a program, or takes it from the device's cache. Throws a device error of one line that names the kernel file
+/// and the file in which the compiler's log is kept. Does not wait for a Rehearsal.
 cl::Program build_now(const Device& device, const ProgramText& text);
 
 /// Compiles one kernel file (path below kernels/) for a device. Throws as build_now().

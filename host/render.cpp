@@ -6,6 +6,7 @@
 
 #include "geom/error.h"
 #include "host/device_fault.h"
+#include "host/driver_crash.h"
 #include "host/stop.h"
 #include "host/work_list.h"
 
@@ -27,6 +28,10 @@ WFrame frame_of(const World& world, const IntegratorScene& integrator) {
   return frame;
 }
 
+uint32_t pool_of(const DeviceTraits& traits, const IntegratorScene& integrator, uint32_t wanted) {
+  return wanted ? wanted : integrator.pool ? integrator.pool : traits.pool;
+}
+
 // Blocks small enough to be shared fairly: each device makes waves of as many as fill its pool.
 uint32_t block_size(uint32_t smallest_pool, uint64_t pixels, size_t devices) {
   const uint64_t tiles = std::min<uint64_t>(smallest_pool / kScrambles, pixels / (32 * devices)) / 64;
@@ -46,7 +51,7 @@ class Job {
     on_every_device([&](uint32_t d) {
       const Device& device = *devices[d].device;
       const Features features = analyse(world, integrator, options.aovs, int(device.traits().lanes));
-      const uint32_t pool = options.pool ? options.pool : integrator.pool ? integrator.pool : device.traits().pool;
+      const uint32_t pool = pool_of(device.traits(), integrator, options.pool);
       waves_[d] = std::make_unique<Wavefront>(device, *devices[d].scene, features, world.camera, pool,
                                               options.kernel_dir);
     });
@@ -116,6 +121,7 @@ class Job {
   }
 
   void work(uint32_t d) {
+    const DriverCall guard;
     Wavefront& wave = *waves_[d];
     DeviceShare& share = result_.devices[d];
     while (const auto unit = list_->take(d, wave.pool(), block_pixels_, kScrambles)) {
