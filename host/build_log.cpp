@@ -40,11 +40,12 @@ std::string keep_build_log(const std::string& title, const std::string& log) {
 std::string first_error(const std::string& log) {
   std::istringstream in(log);
   std::string first;
+  int lines = 0;
   for (std::string line; std::getline(in, line);) {
-    if (line.find("error") != std::string::npos) return line;
-    if (first.empty() && line.find_first_not_of(" \t\r") != std::string::npos) first = line;
+    if (line.find("error:") != std::string::npos) return line;
+    if (line.find_first_not_of(" \t\r") != std::string::npos && lines++ < 2) first += line + ' ';
   }
-  return first;
+  return first.substr(0, first.find_last_not_of(' ') + 1);
 }
 
 }  // namespace wale

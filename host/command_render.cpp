@@ -35,11 +35,11 @@ class Devices {
   }
 
   // At the same time: each device warps, packs and builds its own tree, as its rounding may be its own.
-  void upload(const World& world, const IntegratorScene& integrator, bool aovs) {
+  void upload(const World& world, const IntegratorScene& integrator, const RenderOptions& options) {
     for (const Device& device : open_) {
       const DeviceTraits& traits = device.traits();
-      const Features features = analyse(world, integrator, aovs, int(traits.lanes));
-      require_memory(device, memory_needs(world, features, integrator.pool ? integrator.pool : traits.pool, traits));
+      const Features features = analyse(world, integrator, options.aovs, int(traits.lanes));
+      require_memory(device, memory_needs(world, features, pool_of(traits, integrator, options), traits));
     }
     const LocalStage stage = local_stage(integrator);
     std::vector<std::future<std::unique_ptr<SceneDevice>>> scenes;
@@ -167,14 +167,14 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   if (!args.quiet)
     for (const auto& note : world.notes) fmt::print(stderr, "note: {}\n", note);
   start.step("knit");
-  devices.upload(world, scene.integrator, aovs);
-  start.step("warp and tree");
   RenderOptions options;
   options.spp = args.spp > 0 ? args.spp : scene.integrator.spp;
   if (args.seconds > 0 && args.spp == 0) options.spp = 1 << 20;  // the clock decides
   options.seconds = args.seconds;
   options.aovs = aovs;
   options.kernel_dir = args.kernel_dir;
+  devices.upload(world, scene.integrator, options);
+  start.step("warp and tree");
   Progress bar("render", args.quiet);
   const Rendered r = render(devices.list(), world, scene.integrator, options, [&](double f) { bar.update(f); });
   bar.finish(r.stopped ? "stopped early" : "");
@@ -182,8 +182,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   start.step("first wave", r.first_sample_seconds);
 
   for (const auto& output : args.outputs) write_image(r.image, output, scene.film.exposure, scene.film.view);
-  const Features features =
-      analyse(world, scene.integrator, aovs, int(devices.list().front().device->traits().lanes));
+  const Features features = analyse(world, scene.integrator, aovs, int(devices.list().front().device->traits().lanes));
   Stats stats = stats_of(scene, world, devices.list(), features, r);
   stats.first_sample_seconds = start.seconds();
   stats.start = start.steps();

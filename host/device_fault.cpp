@@ -10,8 +10,9 @@ struct Named {
   const char *name, *help;
 };
 
-constexpr const char* kMemory = "; the device has too little memory free: use fewer repeats, a smaller film or pool, "
-                                "or another device (see `wale devices`)";
+constexpr const char* kMemory =
+    "; the device has too little memory free: use fewer repeats, a smaller film or pool, "
+    "or another device (see `wale devices`)";
 constexpr Named kCodes[] = {
     {CL_DEVICE_NOT_AVAILABLE, "CL_DEVICE_NOT_AVAILABLE", "; something else holds the device"},
     {CL_COMPILER_NOT_AVAILABLE, "CL_COMPILER_NOT_AVAILABLE", "; its driver has no compiler"},

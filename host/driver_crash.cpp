@@ -28,29 +28,28 @@ void on_crash(int number) {
   ::raise(number);
 }
 
-void catch_crashes() {
+void write_message() {
   const char* cache = std::getenv("POCL_CACHE_DIR");
-  const std::string text = one_line(fmt::format(
-      "wale: the OpenCL driver crashed; a damaged kernel cache does this: remove {} (PoCL) and try again, or take "
-      "another device", cache ? cache : "~/.cache/pocl")) + "\n";
+  const std::string text =
+      one_line(
+          fmt::format("wale: the OpenCL driver crashed; a damaged kernel cache does this: remove {} (PoCL) and try "
+                      "again, or take another device",
+                      cache ? cache : "~/.cache/pocl")) +
+      "\n";
   message_size = std::min(text.size(), sizeof(message));
   std::memcpy(message, text.data(), message_size);
-  for (const int number : kCrashes) {
-    struct sigaction now{};
-    // Sanitizers and debuggers have handlers of their own.
-    if (::sigaction(number, nullptr, &now) != 0 || now.sa_handler != SIG_DFL) continue;
-    struct sigaction ours{};
-    ours.sa_handler = on_crash;
-    ::sigaction(number, &ours, nullptr);
-  }
 }
 
 }  // namespace
 
 DriverCall::DriverCall() {
-  static const bool caught = (catch_crashes(), true);
-  (void)caught;
+  static const bool written = (write_message(), true);
+  (void)written;
   ++calls;
+#ifndef __SANITIZE_ADDRESS__
+  // Again and again: LLVM, inside the driver, sets handlers of its own.
+  for (const int number : kCrashes) ::signal(number, on_crash);
+#endif
 }
 
 DriverCall::~DriverCall() { --calls; }

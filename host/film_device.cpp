@@ -7,8 +7,8 @@
 namespace wale {
 namespace {
 
-constexpr uint32_t kTile = 8;  // W_TILE of path_state.clh
-constexpr size_t kFeatures = 4;    // vectors of accumulate_aov
+constexpr uint32_t kTile = 8;    // W_TILE of path_state.clh
+constexpr size_t kFeatures = 4;  // vectors of accumulate_aov
 
 uint64_t tiles(int n) { return (uint64_t(n) + kTile - 1) / kTile; }
 

@@ -16,7 +16,8 @@ constexpr uint64_t kTreeBytes = W_NODE_WORDS * 4 / 10 + 4;
 constexpr uint64_t kWarpBytes = sizeof(WAnchor) + 1, kPackBytes = 40;
 
 std::string size_text(uint64_t bytes) {
-  return bytes < 1000000000 ? fmt::format("{:.1f} MB", 1e-6 * double(bytes)) : fmt::format("{:.1f} GB", 1e-9 * double(bytes));
+  return bytes < 1000000000 ? fmt::format("{:.1f} MB", 1e-6 * double(bytes))
+                            : fmt::format("{:.1f} GB", 1e-9 * double(bytes));
 }
 
 uint64_t leaf_words(const Patch& patch, uint32_t plies) {
@@ -50,8 +51,9 @@ std::vector<MemoryNeed> memory_needs(const World& world, const Features& feature
       {"warp and pack", vertices * kWarpBytes + patches * kPackBytes, true, fewer},
       {"ply colours", world.ply_colors.size() * 4, false, "fewer colours"},
       {"triangles", world.triangles.size() * 4 * 2, false, "simpler props"},
-      {"environment", world.environment_tables.texels.size() * sizeof(w_float4) + world.environment_tables.cdf.size() * 4,
-       false, "a smaller environment image"}};
+      {"environment",
+       world.environment_tables.texels.size() * sizeof(w_float4) + world.environment_tables.cdf.size() * 4, false,
+       "a smaller environment image"}};
   std::stable_sort(needs.begin(), needs.end(), [](const auto& a, const auto& b) { return a.bytes > b.bytes; });
   return needs;
 }
@@ -71,7 +73,8 @@ void require_memory(const Device& device, const std::vector<MemoryNeed>& needs) 
   for (const auto& need : needs)
     if (!need.splits && need.bytes > traits.max_alloc_bytes)
       user_error(
-          "device {} ({}) holds at most {} in one buffer, {} would need {}; use {}, or another device (see `wale devices`)",
+          "device {} ({}) holds at most {} in one buffer, {} would need {}; use {}, or another device (see `wale "
+          "devices`)",
           device.number(), traits.name, size_text(traits.max_alloc_bytes), need.name, size_text(need.bytes),
           need.instead);
 }

@@ -28,10 +28,6 @@ WFrame frame_of(const World& world, const IntegratorScene& integrator) {
   return frame;
 }
 
-uint32_t pool_of(const DeviceTraits& traits, const IntegratorScene& integrator, uint32_t wanted) {
-  return wanted ? wanted : integrator.pool ? integrator.pool : traits.pool;
-}
-
 // Blocks small enough to be shared fairly: each device makes waves of as many as fill its pool.
 uint32_t block_size(uint32_t smallest_pool, uint64_t pixels, size_t devices) {
   const uint64_t tiles = std::min<uint64_t>(smallest_pool / kScrambles, pixels / (32 * devices)) / 64;
@@ -51,9 +47,9 @@ class Job {
     on_every_device([&](uint32_t d) {
       const Device& device = *devices[d].device;
       const Features features = analyse(world, integrator, options.aovs, int(device.traits().lanes));
-      const uint32_t pool = pool_of(device.traits(), integrator, options.pool);
-      waves_[d] = std::make_unique<Wavefront>(device, *devices[d].scene, features, world.camera, pool,
-                                              options.kernel_dir);
+      const uint32_t pool = pool_of(device.traits(), integrator, options);
+      waves_[d] =
+          std::make_unique<Wavefront>(device, *devices[d].scene, features, world.camera, pool, options.kernel_dir);
     });
     result_.program_seconds = since(start);
     uint32_t pool = ~0u;
@@ -175,6 +171,10 @@ class Job {
 };
 
 }  // namespace
+
+uint32_t pool_of(const DeviceTraits& traits, const IntegratorScene& integrator, const RenderOptions& options) {
+  return options.pool ? options.pool : integrator.pool ? integrator.pool : traits.pool;
+}
 
 Rendered render(std::span<const RenderDevice> devices, const World& world, const IntegratorScene& integrator,
                 const RenderOptions& options, const std::function<void(double)>& progress) {

@@ -17,6 +17,9 @@ struct RenderOptions {
   std::filesystem::path kernel_dir;
 };
 
+/// Paths in flight on a device: what the options say, else the scene, else the device's table of traits.
+uint32_t pool_of(const DeviceTraits& traits, const IntegratorScene& integrator, const RenderOptions& options);
+
 /// A device and the scene on it.
 struct RenderDevice {
   const Device* device = nullptr;
@@ -26,10 +29,10 @@ struct RenderDevice {
 /// What one device did of a render.
 struct DeviceShare {
   WaveCounts counts;
-  double busy_seconds = 0;      ///< from taking a unit of work to its end, all units
-  uint32_t units = 0, pool = 0; ///< units of work; paths in flight
-  uint64_t path_bytes = 0;      ///< path state and film
-  uint64_t moved_blocks = 0;    ///< blocks of pixels whose sums it took over from another device
+  double busy_seconds = 0;       ///< from taking a unit of work to its end, all units
+  uint32_t units = 0, pool = 0;  ///< units of work; paths in flight
+  uint64_t path_bytes = 0;       ///< path state and film
+  uint64_t moved_blocks = 0;     ///< blocks of pixels whose sums it took over from another device
 };
 
 struct Rendered {
