@@ -137,7 +137,7 @@ TEST_F(Cache, AnotherCompilerOptionIsAnotherProgram) {
   EXPECT_GT(before, 0u);
   ASSERT_EQ(plan(cache).status, 0);
   EXPECT_EQ(programs(), before) << "the same again comes from the cache";
-  const Outcome broken = plan(cache, {"WALE_KERNEL_OPTIONS=-DW_VERTEX_WORDS=nonsense"});
+  const Outcome broken = plan(cache, {"WALE_KERNEL_OPTIONS=-Dget_global_id=w_no_such_function"});
   EXPECT_EQ(broken.status, 2) << "a program of other options must not come from the cache: " << broken.err;
 }
 
@@ -145,9 +145,10 @@ TEST_F(CliDevices, ABuildThatFailsKeepsItsLog) {
   for (const bool writable : {true, false}) {
     const TemporaryFolder cache;
     const std::string folder = writable ? cache.path().string() : "/proc/nowhere";
-    const std::string line = refused(render("0"), 2,
-                                     {"WALE_KERNEL_OPTIONS=-Dget_global_id=w_no_such_function",
-                                      "XDG_CACHE_HOME=" + folder, "TMPDIR=" + cache.path().string(), "POCL_CACHE_DIR=" + cache.path().string() + "/pocl"});
+    const std::string line =
+        refused(render("0"), 2,
+                {"WALE_KERNEL_OPTIONS=-Dget_global_id=w_no_such_function", "XDG_CACHE_HOME=" + folder,
+                 "TMPDIR=" + cache.path().string(), "POCL_CACHE_DIR=" + cache.path().string() + "/pocl"});
     EXPECT_TRUE(contains(line, "does not compile for "));
     EXPECT_TRUE(contains(line, " with the environment's WALE_KERNEL_OPTIONS: "));
     EXPECT_TRUE(contains(line, "w_no_such_function")) << "the compiler's first error";
