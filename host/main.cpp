@@ -9,6 +9,7 @@
 #include "geom/error.h"
 #include "host/commands.h"
 #include "host/device.h"
+#include "host/device_fault.h"
 #include "host/suggest.h"
 
 namespace {
@@ -32,7 +33,7 @@ void add_scene_options(CLI::App& command, SceneArgs& args) {
   command.add_option("SCENE", args.scene, "scene file")->required();
   command.add_option("--set", args.set, "change a key of the scene: key.path=value (repeatable)")
       ->allow_extra_args(false);
-  command.add_option("--device", args.device, "number of the OpenCL device, see `wale devices`");
+  command.add_option("--device", args.device, "OpenCL device (see `wale devices`): its number; for a render also several, 0,2, or all");
   command.add_option("--kernel-dir", args.kernel_dir, "read kernels from this folder instead of the built-in ones");
   command.add_flag("--quiet", args.quiet, "no progress");
 }
@@ -123,7 +124,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "wale: %s\n", e.what());
     return static_cast<int>(e.fault());
   } catch (const cl::Error& e) {
-    std::fprintf(stderr, "wale: OpenCL: %s failed with error %d\n", e.what(), e.err());
+    std::fprintf(stderr, "wale: %s\n", wale::opencl_fault(e).c_str());
     return 2;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "wale: out of memory; use fewer repeats or a smaller film\n");

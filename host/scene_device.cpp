@@ -1,6 +1,7 @@
 #include "host/scene_device.h"
 
 #include "geom/error.h"
+#include "host/driver_crash.h"
 #include "host/triangle_tree.h"
 #include "shared/visits.h"
 
@@ -35,10 +36,15 @@ std::vector<FabricInput> inputs_of(const World& world) {
   return inputs;
 }
 
+FabricDevice upload(const Device& device, const World& world, LocalStage stage) {
+  const DriverCall guard;
+  return upload_fabrics(device, inputs_of(world), world.origin, stage);
+}
+
 }  // namespace
 
 SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage stage)
-    : device_(device), stage_(stage), fabric_(upload_fabrics(device, inputs_of(world), world.origin, stage)) {
+    : device_(device), stage_(stage), fabric_(upload(device, world, stage)) {
   const TriangleTree tree = build_triangle_tree(corners_of(world.triangles));
   ply_materials_ = Buffer<WPlyMaterial>(device, world.ply_materials);
   fibre_details_ = Buffer<WFibreDetail>(device, world.fibres.details);

@@ -33,6 +33,20 @@ constexpr double kShadePlyOperations = 1000 + 39 * 20;
 
 }  // namespace
 
+std::vector<Stage> geometry_stages(const Features& f) {
+  const bool curves = f.plies || f.fibres;
+  return {{.file = "warp.cl",
+           .kernels = {"warp_points", "warp_normals"},
+           .used = curves,
+           .because = "plies on the base mesh",
+           .before_rays = true},
+          {.file = "pack.cl",
+           .kernels = {"pack_leaves"},
+           .used = curves,
+           .because = "leaves and bounds",
+           .before_rays = true}};
+}
+
 std::vector<Stage> wavefront_stages(const Features& f) {
   const bool surfaces = f.triangles || f.spheres;
   const double shadow = f.lights ? kShadowRay : 0, features = f.aovs ? 4 * kVec : 0;

@@ -1,5 +1,7 @@
 #include "host/wave_counts.h"
 
+#include <algorithm>
+
 namespace wale {
 
 double WaveCounts::bounce_seconds() const {
@@ -7,6 +9,19 @@ double WaveCounts::bounce_seconds() const {
   for (const char* kernel : {"intersect", "intersect_packets"})
     if (const auto found = stages.find(kernel); found != stages.end()) seconds += found->second.seconds;
   return seconds;
+}
+
+WaveCounts& WaveCounts::operator+=(const WaveCounts& other) {
+  primary += other.primary, bounce += other.bounce, shadow += other.shadow, paths += other.paths;
+  deepest = std::max(deepest, other.deepest);
+  for (size_t i = 0; i < events.size(); ++i) events[i] += other.events[i];
+  for (const auto& [name, time] : other.stages) {
+    StageTime& stage = stages[name];
+    stage.seconds += time.seconds, stage.launches += time.launches, stage.items += time.items;
+  }
+  primary_seconds += other.primary_seconds;
+  for (const auto& [file, seconds] : other.program_seconds) program_seconds[file] += seconds;
+  return *this;
 }
 
 void WaveCounts::add_bounce(const std::string& nearest, uint32_t live, const uint32_t* hits, uint32_t shadow_rays) {

@@ -17,7 +17,7 @@ struct StageTime {
   uint64_t items = 0;
 };
 
-/// What the wavefront counted.
+/// What the wavefront counted. Of several devices: sums, seconds too; the longest path of all.
 struct WaveCounts {
   uint64_t primary = 0, bounce = 0, shadow = 0, paths = 0;
   uint32_t deepest = 0;
@@ -29,7 +29,9 @@ struct WaveCounts {
   /// What the nearest hits of all other rays took.
   double bounce_seconds() const;
 
-  /// Items of one bounce of `live` paths, whose hits the kernel `nearest` found. `hits` are the bins after intersect: plies, surfaces, misses, fibres.
+  WaveCounts& operator+=(const WaveCounts& other);
+  /// Items of one bounce of `live` paths, whose hits the kernel `nearest` found. `hits` are the bins after it: plies,
+  /// surfaces, misses, fibres.
   void add_bounce(const std::string& nearest, uint32_t live, const uint32_t* hits, uint32_t shadow_rays);
   /// Items of the stages that every path of a wave goes through once.
   void add_wave(uint32_t wave_paths);

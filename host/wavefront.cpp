@@ -13,7 +13,6 @@ namespace wale {
 namespace {
 
 constexpr uint32_t kChunk = 256;       // W_CHUNK of compact.cl
-constexpr uint32_t kTile = 8;          // W_TILE of path_state.clh
 constexpr uint32_t kDepthCap = 65536;  // no path is this long; reaching it is counted as an event
 
 template <typename... Args>
@@ -32,7 +31,8 @@ cl_float2 pixel_width(const WCamera& camera) {
 
 Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Features& features, const WCamera& camera,
                      uint32_t pool, const std::filesystem::path& kernel_dir)
-    : device_(device), scene_(scene), features_(features), camera_(camera), pool_(std::max(64u, pool)) {
+    : device_(device), scene_(scene), features_(features), camera_(camera), pool_(std::max(64u, pool)),
+      film_(device, camera.width, camera.height, features.aovs) {
   const auto vec = [&](Buffer<w_float4>& buffer, size_t count) {
     buffer = Buffer<w_float4>(device_, count);
     bytes_ += buffer.bytes();
@@ -41,11 +41,6 @@ Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Featu
     buffer = Buffer<uint32_t>(device_, count);
     bytes_ += buffer.bytes();
   };
-  const size_t pixels = size_t(camera.width) * camera.height;
-  const uint64_t film_bytes = pixels * kScrambles * sizeof(w_float4);
-  if (film_bytes > device.traits().max_alloc_bytes)
-    user_error("film.size: {} x {} pixels need {} bytes in one buffer, the device allows {}", camera.width,
-               camera.height, film_bytes, device.traits().max_alloc_bytes);
   for (auto* b :
        {&ray_o_, &ray_l_, &ray_d_, &weight_, &hit_, &radiance_, &shadow_o_, &shadow_l_, &shadow_d_, &shadow_c_})
     vec(*b, pool_);
@@ -57,13 +52,7 @@ Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Featu
   ints(fibre_list_, features_.fibres ? pool_ : 0);
   ints(chunk_, (pool_ / kChunk + 1) * bins());
   ints(queue_counts_, kQueueCounts);
-  vec(film_, pixels * kScrambles);
-  film_.fill(device_, w_float4{0, 0, 0, 0});
   vec(aov_, features_.aovs ? size_t(pool_) * 4 : 0);
-  vec(aov_film_, features_.aovs ? pixels * 4 : 0);
-  ints(ply_film_, features_.aovs ? pixels : 0);
-  aov_film_.fill(device_, w_float4{0, 0, 0, 0});
-  ply_film_.fill(device_, W_NONE);
   build_programs(kernel_dir);
 }
 
@@ -133,19 +122,8 @@ void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
     next = scene_.bind_scene(k, path(k, 1));
     set_args(k, next, shadow_list_.cl(), queue_counts_.cl());
   }
-  auto& accumulate = kernel("accumulate");
-  set_args(accumulate, 1, camera_);
-  set_args(accumulate, 3, radiance_.cl(), film_.cl(), scene_.events());
-  if (features_.aovs) {
-    auto& k = kernel("accumulate_aov");
-    set_args(k, 1, camera_);
-    set_args(k, 3, aov_.cl(), aov_film_.cl(), ply_film_.cl());
-  }
-}
-
-uint32_t Wavefront::padded_pixels() const {
-  const auto tiles = [](int n) { return (uint32_t(n) + kTile - 1) / kTile; };
-  return tiles(camera_.width) * tiles(camera_.height) * kTile * kTile;
+  kernel("accumulate").setArg(1, camera_);
+  if (features_.aovs) kernel("accumulate_aov").setArg(1, camera_);
 }
 
 void Wavefront::launch(const std::string& name, size_t items, bool camera_rays) {
@@ -251,11 +229,14 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
     }
     side = 1 - side;
   }
-  set_args(kernel("accumulate"), 2, pixels);
-  launch("accumulate", pixels);
-  if (features_.aovs) {
-    set_args(kernel("accumulate_aov"), 2, pixels);
-    launch("accumulate_aov", pixels);
+  for (const auto& p : film_.pieces(first_pixel, pixels)) {
+    set_args(kernel("accumulate"), 2, p.in_run, p.in_band, p.count, radiance_.cl(), film_.radiance(p.band),
+             scene_.events());
+    launch("accumulate", p.count);
+    if (!features_.aovs) continue;
+    set_args(kernel("accumulate_aov"), 2, p.in_run, p.in_band, p.count, aov_.cl(), film_.aov(p.band),
+             film_.ply(p.band));
+    launch("accumulate_aov", p.count);
   }
   device_.queue().finish();
   counts_.add_wave(frame.paths);
@@ -269,14 +250,6 @@ void Wavefront::harvest_events() {
         count_cpu_time_ ? launch.cpu_seconds / device_.traits().compute_units : device_seconds(launch.event),
         launch.camera_rays);
   pending_.clear();
-}
-
-std::vector<w_float4> Wavefront::read_aov() const {
-  return features_.aovs ? aov_film_.read(device_) : std::vector<w_float4>{};
-}
-
-std::vector<uint32_t> Wavefront::read_ply() const {
-  return features_.aovs ? ply_film_.read(device_) : std::vector<uint32_t>{};
 }
 
 WaveCounts Wavefront::counts() const {

@@ -8,6 +8,7 @@
 
 #include "host/device.h"
 #include "host/features.h"
+#include "host/film_device.h"
 #include "host/ray_batch.h"
 #include "host/scene_device.h"
 #include "host/wave_counts.h"
@@ -23,11 +24,10 @@ class Wavefront {
   Wavefront(const Device& device, const SceneDevice& scene, const Features& features, const WCamera& camera,
             uint32_t pool, const std::filesystem::path& kernel_dir = {});
 
-  /// Pixel numbers run along 8 x 8 tiles: this many, of which those outside the picture are skipped.
-  uint32_t padded_pixels() const;
   uint32_t pool() const { return pool_; }
 
-  /// Traces `samples` samples from `first_sample` of pixels [first_pixel, first_pixel + pixels).
+  /// Traces `samples` samples from `first_sample` of pixels [first_pixel, first_pixel + pixels) and adds them to the
+  /// film; pixel numbers run along 8 x 8 tiles (padded_pixels), those outside the picture are skipped.
   void trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint32_t first_sample, uint32_t samples);
 
   /// Waits for every launch and counts the CPU seconds of all threads over the compute units as its time, which other
@@ -43,15 +43,9 @@ class Wavefront {
   /// What trace_loaded() found, per ray: t, kind, code as in RayBatch::found; of shadow rays x = 1 where light arrives.
   std::vector<w_float4> read_found(const RayBatch& batch) const;
 
-  /// Sums per pixel and scramble: width*height*8 of (r, g, b, count).
-  std::vector<w_float4> read_film() const { return film_.read(device_); }
-  /// Sums per pixel of the four feature vectors, and ply numbers; empty without the feature.
-  std::vector<w_float4> read_aov() const;
-  std::vector<uint32_t> read_ply() const;
+  FilmDevice& film() { return film_; }
   WaveCounts counts() const;
-  uint64_t bytes() const { return bytes_; }
-
-  static constexpr int kScrambles = 8;
+  uint64_t bytes() const { return bytes_ + film_.bytes(); }
 
  private:
   // Places of the queue lengths in queue_counts_.
@@ -95,8 +89,8 @@ class Wavefront {
   Buffer<std::array<float, 2>> hit_uv_;
   Buffer<uint32_t> mask_, active_[2], ply_list_, surface_list_, miss_list_, fibre_list_, shadow_list_, spare_list_,
       chunk_, queue_counts_;
-  Buffer<w_float4> film_, aov_, aov_film_;
-  Buffer<uint32_t> ply_film_;
+  Buffer<w_float4> aov_;
+  FilmDevice film_;
 };
 
 }  // namespace wale

@@ -63,7 +63,7 @@ FabricResult measure(const Device& device, const Workload& workload, const Loade
 
   RayRecord record;
   render_options.record = &record;
-  const uint32_t pool = render(device, world, *scene, integrator, render_options).pool;
+  const uint32_t pool = render(device, world, *scene, integrator, render_options).devices.front().pool;
   render_options.record = nullptr;
   render_options.count_cpu_time = device.traits().cpu;
   step();
