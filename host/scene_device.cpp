@@ -26,7 +26,9 @@ std::vector<float> corners_of(const std::vector<float>& triangles) {
   return out;
 }
 
-std::vector<FabricInput> inputs_of(const World& world) {
+}  // namespace
+
+std::vector<FabricInput> fabric_inputs(const World& world) {
   std::vector<FabricInput> inputs;
   for (size_t i = 0; i < world.fabrics.size(); ++i)
     inputs.push_back({&world.fabrics[i], world.fabric_material[i], world.ply_materials[world.fabric_material[i]].tau_e,
@@ -34,10 +36,8 @@ std::vector<FabricInput> inputs_of(const World& world) {
   return inputs;
 }
 
-}  // namespace
-
 SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage stage)
-    : device_(device), stage_(stage), fabric_(upload_fabrics(device, inputs_of(world), world.origin, stage)) {
+    : device_(device), stage_(stage), fabric_(upload_fabrics(device, fabric_inputs(world), world.origin, stage)) {
   const TriangleTree tree = build_triangle_tree(corners_of(world.triangles));
   ply_materials_ = Buffer<WPlyMaterial>(device, world.ply_materials);
   fibre_details_ = Buffer<WFibreDetail>(device, world.fibres.details);
@@ -109,7 +109,7 @@ cl_uint SceneDevice::bind_lights(cl::Kernel& kernel, cl_uint first) const {
 }
 
 std::map<std::string, uint64_t> SceneDevice::bytes() const {
-  return {{"ply vertices", fabric_.vertices.bytes()},
+  return {{"ply vertices", fabric_.frames.bytes()},
           {"ply leaves", fabric_.tree.leaves.bytes()},
           {"ply tree", fabric_.tree.nodes.bytes() + fabric_.tree.node_cell.bytes()},
           {"triangles", triangles_.bytes() + tri_leaves_.bytes() + tri_nodes_.bytes()},
