@@ -22,7 +22,7 @@ __kernel void intersect(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, __global co
 #endif
   uint bin = h.kind == W_HIT_NONE ? W_BIN_MISS : h.kind == W_HIT_PLY ? W_BIN_PLY : W_BIN_SURFACE;
 #ifdef W_HAS_FIBRES
-  if (bin == W_BIN_PLY && (leaves[((size_t)(h.code >> 4) << 2) + W_LEAF_MATERIAL] & W_MATERIAL_FIBRE))
+  if (bin == W_BIN_PLY && (w_leaf(&scene, h.code >> 4).head[W_LEAF_MATERIAL] & W_MATERIAL_FIBRE))
     bin = W_BIN_FIBRE;
 #endif
   mask[slot] = bin;
