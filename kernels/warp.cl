@@ -61,7 +61,7 @@ W_INLINE w_v3 scaled(w_vf s, w_v3 a) {
   b.z = s * a.z;
   return b;
 }
-/* s a + t b, and c more. */
+/* s a + t b. */
 W_INLINE w_v3 weighted(w_vf s, w_v3 a, w_vf t, w_v3 b) { return w_v3_fma(s, a, scaled(t, b)); }
 W_INLINE w_v3 sum(w_v3 a, w_v3 b) { return w_v3_fma(w_all(1), a, b); }
 
