@@ -46,15 +46,15 @@ Stats stats_of(const Scene& scene, const Device& device, const World& world, con
   s.stage_seconds["pack leaves"] = on_device.fabric().pack_seconds;
   s.stage_seconds["build tree"] = on_device.fabric().build_seconds;
   for (const auto& [name, stage] : r.counts.stages) s.stage_seconds[name] = stage.seconds;
+  s.rates = measure_rates(device);
+  s.stages = profile_stages(features, r.counts, s.rates);
+  s.ns_per_vertex = ns_per_vertex(r.counts);
   const auto seconds = [&](const char* stage) {
     const auto found = r.counts.stages.find(stage);
     return found == r.counts.stages.end() ? 0.0 : found->second.seconds;
   };
-  // Primary and bounce rays share the intersect stage; its time is split by their numbers.
-  const double path_rays = double(r.counts.primary + r.counts.bounce);
-  const double per_ray = path_rays > 0 ? seconds("intersect") / path_rays : 0;
-  s.rays["primary"] = {r.counts.primary, per_ray * double(r.counts.primary)};
-  s.rays["bounce"] = {r.counts.bounce, per_ray * double(r.counts.bounce)};
+  s.rays["primary"] = {r.counts.primary, r.counts.primary_seconds};
+  s.rays["bounce"] = {r.counts.bounce, r.counts.bounce_seconds()};
   s.rays["shadow"] = {r.counts.shadow, seconds("connect")};
   for (const RareEvent& e : kRareEvents) s.rare_events[e.name] = r.counts.events[e.counter];
   s.width = world.camera.width;
@@ -101,8 +101,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
 
   for (const auto& output : args.outputs) write_image(r.image, output, scene.film.exposure, scene.film.view);
   const Features features = analyse(world, scene.integrator, aovs, int(device.traits().lanes));
-  const Stats stats = stats_of(scene, device, world, on_device, features, r);
-  if (!args.stats.empty()) write_stats(stats, args.stats);
+  if (!args.stats.empty()) write_stats(stats_of(scene, device, world, on_device, features, r), args.stats);
   const double rays = double(r.counts.primary + r.counts.bounce + r.counts.shadow);
   if (!args.quiet)
     fmt::print(stderr, "{} samples per pixel in {}, {:.2f} Mrays/s\n", r.samples, duration_text(r.seconds),

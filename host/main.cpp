@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "bench/wale_bench/options.h"
 #include "geom/base_mesh.h"
 #include "geom/error.h"
 #include "host/commands.h"
@@ -93,6 +94,10 @@ int run(int argc, char** argv) {
   c->add_option("B", image_b, "reference image")->required();
   c->add_option("--max-rmse", max_rmse, "fail when the RMSE is larger")->check(finite_number(true));
   c->callback([&] { status = wale::run_compare(image_a, image_b, max_rmse); });
+  wale::bench::BenchArgs bench;
+  c = app.add_subcommand("bench", "throughput of this device, stage by stage; without options, the score");
+  wale::bench::add_bench_options(*c, bench);
+  c->callback([&] { status = wale::bench::run_bench(bench, loaders); });
   c = app.add_subcommand("devices", "list the OpenCL devices");
   c->callback([&] { status = wale::run_devices(); });
   c = app.add_subcommand("schema", "print the JSON Schema of scene files");

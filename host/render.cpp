@@ -14,6 +14,8 @@ Rendered render(const Device& device, const World& world, const SceneDevice& sce
   const Features features = analyse(world, integrator, options.aovs, int(device.traits().lanes));
   const uint32_t pool = options.pool ? options.pool : integrator.pool ? integrator.pool : device.traits().pool;
   Wavefront wavefront(device, scene, features, world.camera, pool, options.kernel_dir);
+  wavefront.record(options.record);
+  wavefront.count_cpu_time(options.count_cpu_time);
   const auto start = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
 

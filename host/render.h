@@ -13,6 +13,8 @@ struct RenderOptions {
   double seconds = 0;  ///< > 0: stop after this time, whatever spp says
   uint32_t pool = 0;   ///< paths in flight; 0 = from the device
   bool aovs = false;
+  bool count_cpu_time = false;  ///< stages by CPU time: see Wavefront::count_cpu_time
+  RayRecord* record = nullptr;  ///< keeps the rays that are sent
   std::filesystem::path kernel_dir;
 };
 

@@ -2,6 +2,7 @@
 
 #include "geom/error.h"
 #include "host/triangle_tree.h"
+#include "shared/visits.h"
 
 namespace wale {
 namespace {
@@ -65,7 +66,7 @@ SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage st
   environment_ = world.environment;
   env_texels_ = Buffer<w_float4>(device, world.environment_tables.texels);
   env_cdf_ = Buffer<float>(device, world.environment_tables.cdf);
-  events_ = Buffer<uint32_t>(device, W_EVENT_COUNT);
+  events_ = Buffer<uint32_t>(device, W_COUNTER_COUNT);
   events_.fill(device, 0u);
 }
 

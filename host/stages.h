@@ -12,6 +12,8 @@ struct Stage {
   std::vector<std::string> kernels;
   bool used = true;
   std::string because;
+  double bytes_per_item = 0;  ///< of path state, lists and stored geometry that an item reads and writes
+  double operations_per_item = 0;  ///< of floats; 0: not counted
 };
 
 /// All stages in the order of a bounce; those that are not used are neither compiled nor launched.

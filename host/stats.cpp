@@ -26,6 +26,10 @@ std::string Stats::json() const {
   out["geometry"] = ordered_json::object();
   for (const auto& [name, g] : geometry) out["geometry"][name] = {{"count", g.count}, {"bytes", g.bytes}};
   out["stage_seconds"] = ordered_json(stage_seconds);
+  out["stages"] = profile_json(stages);
+  out["ns_per_path_vertex"] = ns_per_vertex;
+  out["device_rates"] = {{"bytes_per_second", rates.bytes_per_second},
+                         {"operations_per_second", rates.operations_per_second}};
   out["rays"] = ordered_json::object();
   Rays all;
   const auto rays_json = [](const Rays& r) {

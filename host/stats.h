@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "host/stage_profile.h"
+
 namespace wale {
 
 /// What a run did and what it cost; `--stats FILE` writes it as JSON.
@@ -27,6 +29,9 @@ struct Stats {
   std::vector<Program> programs;
   std::map<std::string, Geometry> geometry;     ///< "segments", "triangles", ...
   std::map<std::string, double> stage_seconds;  ///< "knit", "build tree", "intersect", ...
+  std::vector<StageProfile> stages;             ///< of the wavefront; the tree's bytes are not in them
+  DeviceRates rates;                            ///< by which their floors were found
+  double ns_per_vertex = 0;                     ///< of all stages, per vertex of a path
   std::map<std::string, Rays> rays;             ///< "primary", "shadow", "bounce"
   std::map<std::string, uint64_t> rare_events;  ///< "depth limit", ...
   int width = 0, height = 0;

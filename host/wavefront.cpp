@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <future>
 
 #include "geom/error.h"
@@ -14,9 +15,6 @@ namespace {
 constexpr uint32_t kChunk = 256;       // W_CHUNK of compact.cl
 constexpr uint32_t kTile = 8;          // W_TILE of path_state.clh
 constexpr uint32_t kDepthCap = 65536;  // no path is this long; reaching it is counted as an event
-
-// Places of the queue lengths in queue_counts_.
-constexpr uint32_t kGenerated = 0, kHits = 1, kShaded[2] = {5, 9}, kQueueCounts = 13;
 
 template <typename... Args>
 void set_args(cl::Kernel& kernel, cl_uint first, const Args&... args) {
@@ -98,8 +96,8 @@ void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
   auto& generate = kernel("generate");
   generate.setArg(1, camera_);
   set_args(generate, path(generate, 2), spare_list_.cl(), queue_counts_.cl());
-  auto& intersect = kernel("intersect");
-  scene_.bind_scene(intersect, path(intersect, 1));
+  for (const char* name : {"intersect", "intersect_packets"})
+    if (kernels_.contains(name)) scene_.bind_scene(kernel(name), path(kernel(name), 1));
   auto& miss = kernel("miss");
   cl_uint next = scene_.bind_lights(miss, path(miss, 1));
   set_args(miss, next, aov_.cl(), miss_list_.cl(), queue_counts_.cl(), kHits + 2);
@@ -150,11 +148,31 @@ uint32_t Wavefront::padded_pixels() const {
   return tiles(camera_.width) * tiles(camera_.height) * kTile * kTile;
 }
 
-void Wavefront::launch(const std::string& name, size_t items) {
+void Wavefront::launch(const std::string& name, size_t items, bool camera_rays) {
   cl::Event event;
+  const std::clock_t start = std::clock();
   device_.queue().enqueueNDRangeKernel(kernel(name), cl::NullRange, device_.global(items), device_.local(), nullptr,
                                        &event);
-  pending_.emplace_back(name, event);
+  if (count_cpu_time_) device_.queue().finish();
+  pending_.push_back({name, event, camera_rays, double(std::clock() - start) / CLOCKS_PER_SEC});
+}
+
+void Wavefront::launch_intersect(const Buffer<uint32_t>& list, uint32_t count_index, uint32_t depth, size_t bound) {
+  auto& k = kernel(nearest(depth));
+  set_args(k, k.getInfo<CL_KERNEL_NUM_ARGS>() - 4, list.cl(), queue_counts_.cl(), count_index, depth);
+  launch(nearest(depth), in_packets(depth) ? bound / size_t(features_.lanes) + 1 : bound, depth == 0);
+}
+
+void Wavefront::launch_connect(uint32_t count_index, uint32_t depth, size_t bound) {
+  auto& k = kernel("connect");
+  set_args(k, k.getInfo<CL_KERNEL_NUM_ARGS>() - 2, count_index, depth);
+  launch("connect", bound);
+}
+
+void Wavefront::set_frame(const WFrame& frame) {
+  for (const char* name : {"generate", "intersect", "intersect_packets", "miss", "shade_ply", "shade_fibre", "shade_surface", "connect",
+                           "accumulate", "accumulate_aov"})
+    if (const auto found = kernels_.find(name); found != kernels_.end()) found->second.setArg(0, frame);
 }
 
 void Wavefront::compact(const Buffer<uint32_t>& list, uint32_t count_index, uint32_t total_index, size_t bound,
@@ -175,9 +193,9 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
   frame.samples_before = first_sample;
   frame.samples_in_wave = samples;
   frame.paths = pixels * samples;
-  for (const char* name : {"generate", "intersect", "miss", "shade_ply", "shade_fibre", "shade_surface", "connect",
-                           "accumulate", "accumulate_aov"})
-    if (const auto found = kernels_.find(name); found != kernels_.end()) found->second.setArg(0, frame);
+  set_frame(frame);
+  const bool recording = record_ && waves_ % record_->every == 0;
+  ++waves_;
 
   launch("generate", frame.paths);
   size_t bound = frame.paths;  // launches cover at least the live paths; lengths only ever shrink
@@ -185,16 +203,14 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
   uint32_t count_index = kShaded[1], side = 0;
   std::array<std::array<uint32_t, kQueueCounts>, 2> lengths{};
   cl::Event read[2];
-  auto& intersect = kernel("intersect");
   for (uint32_t depth = 0;; ++depth) {
     if (depth == kDepthCap) {
       counts_.events[W_EVENT_PATH_CAP] += uint32_t(bound);
       break;
     }
     const auto& live = active_[side];
-    const uint32_t args = intersect.getInfo<CL_KERNEL_NUM_ARGS>();
-    set_args(intersect, args - 4, live.cl(), queue_counts_.cl(), count_index, depth);
-    launch("intersect", bound);
+    launch_intersect(live, count_index, depth, bound);
+    if (recording) keep_rays(frame, depth ? RayKind::bounce : RayKind::primary, live, count_index, depth);
     compact(live, count_index, kHits, bound, ply_list_, surface_list_, miss_list_);
     launch("miss", bound);
     for (const char* name : {"shade_ply", "shade_fibre", "shade_surface"})
@@ -205,10 +221,8 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
     const uint32_t shaded = kShaded[side];
     compact(live, count_index, shaded, bound, active_[1 - side], shadow_list_, spare_list_);
     if (features_.lights) {
-      auto& connect = kernel("connect");
-      const uint32_t n = connect.getInfo<CL_KERNEL_NUM_ARGS>();
-      set_args(connect, n - 2, shaded + 1, depth);
-      launch("connect", bound);
+      if (recording) keep_rays(frame, RayKind::shadow, shadow_list_, shaded + 1, depth);
+      launch_connect(shaded + 1, depth, bound);
     }
     device_.queue().enqueueReadBuffer(queue_counts_.cl(), CL_FALSE, 0, sizeof(lengths[0]), lengths[depth % 2].data(),
                                       nullptr, &read[depth % 2]);
@@ -219,13 +233,16 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
       read[(depth - 1) % 2].wait();
       const auto& before = lengths[(depth - 1) % 2];
       const uint32_t was = kShaded[1 - side];
-      if (depth == 1) {  // pixels are padded to whole tiles: only those of the picture have paths
-        counts_.primary += before[kShaded[1]];
-        counts_.paths += before[kShaded[1]];
+      // Pixels are padded to whole tiles: only those of the picture have paths.
+      const uint32_t were_live = depth == 1 ? before[kShaded[1]] : uint32_t(bound);
+      if (depth == 1) {
+        counts_.primary += were_live;
+        counts_.paths += were_live;
       }
       bound = before[was];
       counts_.bounce += before[was];
       counts_.shadow += before[was + 1];
+      counts_.add_bounce(nearest(depth - 1), were_live, before.data() + kHits, before[was + 1]);
       counts_.deepest = std::max(counts_.deepest, depth);
       if (bound == 0) {
         read[depth % 2].wait();
@@ -241,16 +258,16 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
     launch("accumulate_aov", pixels);
   }
   device_.queue().finish();
+  counts_.add_wave(frame.paths);
   harvest_events();
 }
 
 void Wavefront::harvest_events() {
-  for (const auto& [name, event] : pending_) {
-    auto& stage = counts_.stages[name];
-    stage.seconds += 1e-9 * double(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
-                                   event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
-    ++stage.launches;
-  }
+  for (const Launch& launch : pending_)
+    counts_.add_launch(
+        launch.kernel,
+        count_cpu_time_ ? launch.cpu_seconds / device_.traits().compute_units : device_seconds(launch.event),
+        launch.camera_rays);
   pending_.clear();
 }
 
@@ -264,8 +281,9 @@ std::vector<uint32_t> Wavefront::read_ply() const {
 
 WaveCounts Wavefront::counts() const {
   WaveCounts counts = counts_;
+  std::erase_if(counts.stages, [](const auto& stage) { return stage.second.launches == 0; });
   const auto events = scene_.read_events();
-  for (size_t i = 0; i < events.size(); ++i) counts.events[i] += events[i];
+  for (size_t i = 0; i < counts.events.size(); ++i) counts.events[i] += events[i];
   return counts;
 }
 
