@@ -12,8 +12,8 @@ namespace {
 
 // Per patch of a tree of 16-wide nodes that are two thirds full.
 constexpr uint64_t kTreeBytes = W_NODE_WORDS * 4 / 10 + 4;
-// What is gone before the rays: per vertex its anchor, per patch its run and box.
-constexpr uint64_t kWarpBytes = sizeof(WAnchor) + 1, kPackBytes = 40;
+// What is gone before the rays: per vertex its anchor, flags and position, per patch its run and box.
+constexpr uint64_t kWarpBytes = sizeof(WAnchor) + 1 + 12, kPackBytes = 40;
 
 std::string size_text(uint64_t bytes) {
   return bytes < 1000000000 ? fmt::format("{:.1f} MB", 1e-6 * double(bytes))
@@ -45,7 +45,7 @@ std::vector<MemoryNeed> memory_needs(const World& world, const Features& feature
        fmt::format("a film.size of at most {} x {}", int(camera.width * fits), int(camera.height * fits))},
       {"path state", pool * path_bytes, false,
        fmt::format("an integrator.pool of at most {}", traits.global_bytes / 2 / path_bytes)},
-      {"ply vertices", vertices * W_VERTEX_WORDS * 4, false, fewer},
+      {"ply vertices", vertices * W_FRAME_WORDS * 4, false, fewer},
       {"ply leaves", leaves, false, fewer},
       {"ply tree", patches * kTreeBytes, false, fewer},
       {"warp and pack", vertices * kWarpBytes + patches * kPackBytes, true, fewer},

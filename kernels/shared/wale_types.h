@@ -52,11 +52,12 @@ typedef int32_t w_int;
 #define W_LEAF_PLY 11  /* number of the run's first ply, over all fabrics */
 /* Hit code of a ply segment: leaf offset (16-byte units) << 4 | lane. */
 
-/* --- stored ply vertex: 7 floats, 28 bytes: position, frame normal, rest length along the full ply -----------------
+/* --- what a ply vertex keeps for shading: frame normal (unit) and rest length along the full ply, 4 floats, 16 bytes;
+   where it lies is in the leaves. ------------------------------------------------------------------------------------
    The length starts anywhere (a hash of the ply, so that neighbours do not look alike) and wraps at W_LENGTH_PERIOD ply
    radii: a float then keeps the phase of the fibres to 1e-3 rad on any length of yarn. All that winds along a ply does so
    a whole number of times in one period (appearance/fibre_phase.clh). */
-#define W_VERTEX_WORDS 7
+#define W_FRAME_WORDS 4
 #define W_LENGTH_PERIOD 4096.0f
 
 /* Colour of the segment that starts at a vertex, where colours vary: 10 bits q a channel from the lowest up,
