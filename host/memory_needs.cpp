@@ -38,21 +38,24 @@ std::vector<MemoryNeed> memory_needs(const World& world, const Features& feature
   const uint64_t pixels = padded_pixels(camera.width, camera.height);
   const uint64_t pixel_bytes = kScrambles * sizeof(w_float4) + (features.aovs ? 4 * sizeof(w_float4) + 4 : 0);
   const uint64_t path_bytes = 10 * sizeof(w_float4) + 8 + 9 * 4 + (features.aovs ? 4 * sizeof(w_float4) : 0);
+  const uint64_t path_buffer = (features.aovs ? 4 : 1) * sizeof(w_float4);
   const double fits = std::sqrt(std::min(1.0, 0.5 * double(traits.global_bytes) / double(pixels * pixel_bytes)));
   const std::string fewer = "fewer repeats, a coarser gauge or a larger tolerance";
   std::vector<MemoryNeed> needs = {
-      {"film", pixels * pixel_bytes, true,
+      {"film", pixels * pixel_bytes, 0,
        fmt::format("a film.size of at most {} x {}", int(camera.width * fits), int(camera.height * fits))},
-      {"path state", pool * path_bytes, false,
-       fmt::format("an integrator.pool of at most {}", traits.global_bytes / 2 / path_bytes)},
-      {"ply vertices", vertices * W_FRAME_WORDS * 4, false, fewer},
-      {"ply leaves", leaves, false, fewer},
-      {"ply tree", patches * kTreeBytes, false, fewer},
-      {"warp and pack", vertices * kWarpBytes + patches * kPackBytes, true, fewer},
-      {"ply colours", world.ply_colors.size() * 4, false, "fewer colours"},
-      {"triangles", world.triangles.size() * 4 * 2, false, "simpler props"},
+      {"path state", pool * path_bytes, pool * path_buffer,
+       fmt::format("an integrator.pool of at most {}",
+                   std::min(traits.global_bytes / 2 / path_bytes, traits.max_alloc_bytes / path_buffer))},
+      {"ply vertices", vertices * W_FRAME_WORDS * 4, vertices * W_FRAME_WORDS * 4, fewer},
+      {"ply leaves", leaves, leaves, fewer},
+      {"ply tree", patches * kTreeBytes, patches * kTreeBytes, fewer},
+      {"warp and pack", vertices * kWarpBytes + patches * kPackBytes, vertices * sizeof(WAnchor), fewer},
+      {"ply colours", world.ply_colors.size() * 4, world.ply_colors.size() * 4, "fewer colours"},
+      {"triangles", world.triangles.size() * 4 * 2, world.triangles.size() * 4, "simpler props"},
       {"environment",
-       world.environment_tables.texels.size() * sizeof(w_float4) + world.environment_tables.cdf.size() * 4, false,
+       world.environment_tables.texels.size() * sizeof(w_float4) + world.environment_tables.cdf.size() * 4,
+       world.environment_tables.texels.size() * sizeof(w_float4),
        "a smaller environment image"}};
   std::stable_sort(needs.begin(), needs.end(), [](const auto& a, const auto& b) { return a.bytes > b.bytes; });
   return needs;
@@ -71,11 +74,11 @@ void require_memory(const Device& device, const std::vector<MemoryNeed>& needs) 
                needs.front().instead);
   }
   for (const auto& need : needs)
-    if (!need.splits && need.bytes > traits.max_alloc_bytes)
+    if (need.largest > traits.max_alloc_bytes)
       user_error(
           "device {} ({}) holds at most {} in one buffer, {} would need {}; use {}, or another device (see `wale "
           "devices`)",
-          device.number(), traits.name, size_text(traits.max_alloc_bytes), need.name, size_text(need.bytes),
+          device.number(), traits.name, size_text(traits.max_alloc_bytes), need.name, size_text(need.largest),
           need.instead);
 }
 
