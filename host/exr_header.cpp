@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "geom/error.h"
+#include "host/exr_attributes.h"
 
 namespace wale {
 namespace {
@@ -73,13 +74,19 @@ Part read_part(std::string_view bytes, size_t& at, const std::string& file) {
   };
   Part part;
   for (std::string_view name = word(); !name.empty(); name = word()) {
-    word();  // the type
+    const std::string_view type = word();
     if (bytes.size() - at < 4) user_error("{}: ends within its header; is the file cut off?", file);
     const size_t size = unsigned_at(bytes, at);
     at += 4;
     if (size > bytes.size() - at)
       user_error("{}: attribute \"{}\" has {} bytes, but the file has only {} more; is the file cut off?", file,
                  name.substr(0, 64), size, bytes.size() - at);
+    // OpenEXR reads values by their type: where that is another size, all that follows is taken for what it is not.
+    const auto read = exr_value_size(type, bytes.substr(at), size);
+    if (read && *read != size)
+      user_error("{}: attribute \"{}\" of type {} says {} bytes and has {}; is the file damaged?", file,
+                 name.substr(0, 64), type.substr(0, 32), size, *read);
+    if (!read && type == "chlist") user_error("{}: ends within its list of channels; is the file cut off?", file);
     take(part, name, bytes.substr(at, size));
     at += size;
   }

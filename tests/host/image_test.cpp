@@ -176,6 +176,22 @@ TEST(Image, ExrHeaderThatPromisesMoreThanTheFileHoldsIsRefused) {
         << end;
 }
 
+TEST(Image, ExrAttributeOfAnotherSizeThanItSaysIsRefused) {
+  const TemporaryFolder folder;
+  write_image(ramp(6, 5, {"R", "G", "B"}), folder / "a.exr");
+  const std::string whole = file_text(folder / "a.exr");
+  const std::string_view channels{"channels\0chlist\0", 16}, lines{"lineOrder\0lineOrder\0", 20};
+  // One letter more in a channel's name: OpenEXR would take what follows for sizes, gigabytes among them.
+  std::string longer = whole;
+  longer.insert(longer.find(channels) + 20, "x");
+  EXPECT_EQ(user_message([&] { parse_image(longer, "a.exr"); }),
+            "a.exr: attribute \"channels\" of type chlist says 55 bytes and has 56; is the file damaged?");
+  std::string texts = whole;
+  texts.insert(texts.find(lines), std::string("names\0stringvector\0\x08\0\0\0\xff\xff\xff\x7fwool", 31));
+  EXPECT_EQ(user_message([&] { parse_image(texts, "a.exr"); }),
+            "a.exr: attribute \"names\" of type stringvector says 8 bytes and has 2147483651; is the file damaged?");
+}
+
 TEST(Image, PngChunkLongerThanTheFileIsRefused) {
   const TemporaryFolder folder;
   write_image(ramp(6, 5, {"R", "G", "B"}), folder / "a.png");
