@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "bench/cloth_rays.h"
+#include "bench/peers/embree_device.h"
 
 namespace {
 
@@ -32,14 +33,7 @@ std::atomic<int64_t> embree_bytes{0};
 class Peer {
  public:
   explicit Peer(const Strands& cloth) {
-    device_ = rtcNewDevice("threads=2,frequency_level=simd512");
-    rtcSetDeviceMemoryMonitorFunction(
-        device_,
-        [](void*, ssize_t change, bool) {
-          embree_bytes += change;
-          return true;
-        },
-        nullptr);
+    device_ = bench::open_embree(embree_bytes);
     scene_ = rtcNewScene(device_);
     rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
     const size_t vertices = cloth.positions.size() / 3, segments = cloth.segments();

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "bench/peers/embree_device.h"
 #include "geom/base_mesh_generators.h"
 #include "tests/kernels/fabric_tracer.h"
 
@@ -68,14 +69,7 @@ class Peer {
  public:
   Peer(const char* label, RTCBuildQuality scene, RTCBuildQuality geometry, RTCSceneFlags flags)
       : name(label), quality_(scene), geometry_quality_(geometry), flags_(flags) {
-    device_ = rtcNewDevice("threads=2,frequency_level=simd512");
-    rtcSetDeviceMemoryMonitorFunction(
-        device_,
-        [](void*, ssize_t change, bool) {
-          embree_bytes += change;
-          return true;
-        },
-        nullptr);
+    device_ = bench::open_embree(embree_bytes);
   }
   ~Peer() {
     clear();
