@@ -5,6 +5,7 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "geom/error.h"
 #include "host/program.h"
@@ -61,9 +62,10 @@ void append(WarpInput& out, const Fabric& fabric, dvec3 origin) {
     }
 }
 
-Buffer<float> warp(const Device& device, const WarpInput& in) {
+// `more`: vertices to leave room for behind them.
+Buffer<float> warp(const Device& device, const WarpInput& in, size_t more) {
   const uint32_t count = uint32_t(in.anchors.size());
-  Buffer<float> vertices(device, size_t(count) * W_VERTEX_WORDS);
+  Buffer<float> vertices(device, (size_t(count) + more) * W_VERTEX_WORDS);
   if (count == 0) return vertices;
   const Buffer<WAnchor> anchors(device, in.anchors);
   const Buffer<float> positions(device, in.positions), normals(device, in.normals), cloth(device, in.cloth);
@@ -203,13 +205,14 @@ FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> i
   const double start = now();
   WarpInput warp_input;
   std::vector<PlyPatch> patches;
+  std::vector<LatticeInput> lattices;
   size_t curves = 0;
   for (uint32_t f = 0; f < inputs.size(); ++f) {
     const Fabric& fabric = *inputs[f].fabric;
     out.first_vertex.push_back(uint32_t(warp_input.anchors.size()));
     out.first_cell.push_back(uint32_t(out.cell_count));
     out.first_triangle.push_back(uint32_t(warp_input.triangles.size() / 3));
-    append(warp_input, fabric, origin);
+    if (fabric.lattice.empty()) append(warp_input, fabric, origin);  // a lattice needs no mesh
     std::vector<uint32_t> first_curve;  // per run, over all fabrics
     for (const PlyRun& run : fabric.runs) {
       first_curve.push_back(uint32_t(curves));
@@ -225,11 +228,23 @@ FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> i
       out.segment_count += size_t(p.intervals) * run.plies;
     }
     out.cell_count += cells_of(fabric);
+    if (!fabric.lattice.empty()) lattices.push_back({&fabric, f, inputs[f].material, inputs[f].tau});
   }
-  out.vertex_count = warp_input.anchors.size();
+  if (!lattices.empty() && stage != LocalStage::exact)
+    user_error("fabric '{}': it is held as a lattice, which has no UV cells; use integrator.local_stage \"exact\", or "
+               "storage \"stored\" and no lattice",
+               lattices[0].fabric->name);
+  LatticeFabrics placed;
+  if (!lattices.empty()) placed = place_lattices(device, lattices, origin, warp_input.anchors.size(), curves);
+  for (const PlyPatch& p : placed.patches) out.segment_count += size_t(p.intervals) * p.plies;
+  out.segment_count += placed.segments;
+  patches.insert(patches.end(), placed.patches.begin(), placed.patches.end());
+  out.vertex_count = warp_input.anchors.size() + placed.stored_vertices;
   out.triangle_count = warp_input.triangles.size() / 3;
-  out.patch_count = patches.size();
-  out.vertices = warp(device, warp_input);
+  out.patch_count = patches.size() + placed.procedural.number.size();
+  out.vertices = warp(device, warp_input, placed.stored_vertices);
+  placed.device.warp(device, placed.runs, out.vertices);
+  out.tight_joints = placed.tight_joints;
   out.warp_seconds = now() - start;
 
   std::vector<Box> group_boxes;
@@ -238,11 +253,13 @@ FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> i
     for (size_t f = 0; f < inputs.size(); ++f)
       append_group_boxes(group_boxes, *inputs[f].fabric, origin, out.first_cell[f]);
   }
-  out.tree = build_ply_tree(device, patches, out.vertices, group_boxes);
+  out.tree = build_ply_tree(device, patches, out.vertices, group_boxes, std::move(placed.procedural));
+  out.lattice = std::move(placed.device);
   out.pack_seconds = out.tree.pack_seconds;
   out.build_seconds = out.tree.build_seconds;
   out.node_count = out.tree.node_cell.count();
   out.bytes = out.vertices.bytes() + out.tree.leaves.bytes() + out.tree.nodes.bytes() + out.tree.node_cell.bytes();
+  out.bytes += out.lattice.bytes();
   if (stage == LocalStage::exact) return out;
 
   std::vector<uint32_t> code_of_vertex(out.vertex_count, W_NONE);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "geom/fabric.h"
+#include "host/lattice_fabrics.h"
 #include "host/ply_tree.h"
 #include "shared/wale_types.h"
 
@@ -25,6 +26,8 @@ enum class LocalStage { exact = 0, cell = 1, ring = 2 };
 struct FabricDevice {
   Buffer<float> vertices;  ///< W_VERTEX_WORDS a vertex
   PlyTree tree;
+  LatticeDevice lattice;           ///< of fabrics that have one
+  uint32_t tight_joints = 0;       ///< that made procedural fabrics stored, see place_lattices
   std::vector<uint32_t> first_vertex, first_cell, first_triangle;
 
   // Filled for the cell stages only; layouts as in kernels/geometry/scene.clh.

@@ -14,6 +14,7 @@ std::string Features::options() const {
   };
   define(plies || fibres, "W_HAS_PLIES");
   define(fibres, "W_HAS_FIBRES");
+  define(procedural, "W_HAS_PROCEDURAL");
   define(triangles, "W_HAS_TRIANGLES");
   define(spheres, "W_HAS_SPHERES");
   define(environment, "W_HAS_ENVIRONMENT");
@@ -36,6 +37,7 @@ Features analyse(const World& world, const IntegratorScene& integrator, bool aov
   for (const auto& fabric : world.fabrics) {
     f.plies |= fabric.report.plies > 0;
     f.fibres |= fabric.report.fibres > 0;
+    f.procedural |= fabric.procedural;
   }
   f.triangles = world.triangle_count() > 0;
   f.spheres = !world.spheres.empty();
@@ -72,6 +74,9 @@ std::vector<Reason> explain(const World& world, const IntegratorScene& integrato
       {"fibres", f.fibres,
        f.fibres ? "detail \"fibres\" or flyaways of " + with([](const Fabric& x) { return x.report.fibres > 0; })
                 : "no fabric has detail \"fibres\" or flyaways"},
+      {"procedural storage", f.procedural,
+       f.procedural ? "fabrics: " + with([](const Fabric& x) { return x.procedural; })
+                    : "no fabric has storage \"procedural\", or one that is large and regular enough"},
       {"triangles", f.triangles,
        f.triangles ? fmt::format("{} triangles of props and lights", world.triangle_count())
                    : "no mesh, ground or quad light"},

@@ -17,6 +17,7 @@ struct Features {
   bool detail = false;                       ///< fibres show on plies, by maps
   bool paper_lobes = false;                  ///< bodies of plies are Lambert lobes
   bool aovs = false;
+  bool procedural = false;  ///< some leaves keep no points
   bool ply_colors = false;  ///< colours that vary over the cloth
   LocalStage local_stage = LocalStage::exact;
   int lanes = 1;

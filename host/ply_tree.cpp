@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <utility>
 
 #include "geom/error.h"
 #include "host/program.h"
@@ -44,10 +45,17 @@ void refuse_if_too_far(const PlyPatch& patch, const Box& box) {
           patch.fabric, patch.radius, box.lo[k], box.hi[k], kLargestCoordinate);
 }
 
+void join(Box& a, const Box& b) {
+  for (int k = 0; k < 3; ++k) {
+    a.lo[k] = std::min(a.lo[k], b.lo[k]);
+    a.hi[k] = std::max(a.hi[k], b.hi[k]);
+  }
+}
+
 }  // namespace
 
 PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, const Buffer<float>& vertices,
-                       std::span<const Box> group_box) {
+                       std::span<const Box> group_box, ProceduralLeaves procedural) {
   PlyTree tree;
   const double start = now();
   size_t words = 0;
@@ -60,7 +68,7 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
     tree.leaf_offset.push_back(uint32_t(words / 4));
     words += W_LEAF_HEADER + 3 * leaf_stride(patch);
   }
-  if (words / 4 >= 1u << 28 || words * 4 > device.traits().max_alloc_bytes)
+  if (words / 4 >= (procedural.number.empty() ? 1u << 28 : W_LEAF_PROCEDURAL) || words * 4 > device.traits().max_alloc_bytes)
     device_error("ply tree: leaves of {} MB do not fit one buffer of {}; use fewer repeats", words * 4 >> 20,
                  device.traits().name);
   words += kTail;
@@ -71,7 +79,8 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
     std::copy_n(run, 4, run_of.begin() + 4 * i);
   }
   tree.leaves = Buffer<uint32_t>(device, headers);
-  std::vector<Box> boxes(patches.size());
+  std::vector<Box> boxes = std::move(procedural.box);
+  boxes.insert(boxes.begin(), patches.size(), Box{});
   if (!patches.empty()) {
     const Buffer<uint32_t> runs(device, run_of);
     Buffer<float> box_buffer(device, 6 * patches.size());
@@ -83,17 +92,15 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
     pack.setArg(4, uint32_t(patches.size()));
     device.queue().enqueueNDRangeKernel(pack, cl::NullRange, device.global(patches.size()), device.local());
     const std::vector<float> flat = box_buffer.read(device);
-    for (size_t i = 0; i < boxes.size(); ++i) {
+    for (size_t i = 0; i < patches.size(); ++i) {
       std::copy_n(flat.begin() + 6 * i, 3, boxes[i].lo);
       std::copy_n(flat.begin() + 6 * i + 3, 3, boxes[i].hi);
       refuse_if_too_far(patches[i], boxes[i]);
-      for (int k = 0; k < 3; ++k) {
-        tree.bounds.lo[k] = std::min(tree.bounds.lo[k], boxes[i].lo[k]);
-        tree.bounds.hi[k] = std::max(tree.bounds.hi[k], boxes[i].hi[k]);
-      }
     }
-    tree.root = 0;
   }
+  for (const Box& box : boxes) join(tree.bounds, box);
+  if (!boxes.empty()) tree.root = 0;
+  tree.leaf_offset.insert(tree.leaf_offset.end(), procedural.number.begin(), procedural.number.end());
   tree.pack_seconds = now() - start;
 
   std::vector<uint32_t> cells;

@@ -23,10 +23,16 @@ struct PlyPatch {
   bool ghost_ends = false;
 };
 
+/// Procedural leaves: their numbers (W_LEAF_PROCEDURAL included) and boxes.
+struct ProceduralLeaves {
+  std::vector<uint32_t> number;
+  std::vector<Box> box;
+};
+
 /// Leaves and tree over patches, on the device.
 struct PlyTree {
   Buffer<uint32_t> leaves, nodes, node_cell;
-  std::vector<uint32_t> leaf_offset;  ///< per patch, in 16-byte units
+  std::vector<uint32_t> leaf_offset;  ///< per patch, in 16-byte units; then the numbers of procedural leaves
   uint32_t root = 0xffffffffu;        ///< W_NONE when there is no patch
   Box bounds;
   double pack_seconds = 0, build_seconds = 0;
@@ -41,12 +47,13 @@ struct PlyTree {
 /// holds up to 7e12.
 constexpr float kLargestCoordinate = 1e12f;
 
+/// `procedural` leaves join the tree without being packed; they have no cells.
 /// Packs leaves on the device and builds the tree on the host. group_box: see build_wide_tree; when given, each UV cell
 /// gets a node of its own (patches of one cell must follow one another in ascending order of cells), which the cell
 /// stages need. Without it the tree is free of cells: a fifth smaller and faster (bench/results/embree.md).
 /// Throws a device error when a leaf buffer would not fit, and a user error when a ply reaches farther out than
 /// kLargestCoordinate, or has a vertex or radius that is no number.
 PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, const Buffer<float>& vertices,
-                       std::span<const Box> group_box = {});
+                       std::span<const Box> group_box = {}, ProceduralLeaves procedural = {});
 
 }  // namespace wale

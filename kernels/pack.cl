@@ -1,11 +1,6 @@
 /* Leaves and boxes of patches from warped vertices: what runs after the warp and after every change of the base mesh. */
-#include "geometry/real.clh"
+#include "geometry/joint.clh"
 #include "shared/wale_types.h"
-
-/* Joints bent more than this (cosine of 120 degrees) get a sphere: the mitre's spike would pass 2 r. */
-#define W_MITRE_COS -0.5f
-/* Share of r below which a segment counts as a point. */
-#define W_POINT_SEGMENT 1e-5f
 
 /* One ply of a run: `vertices` of its W_VERTEX_WORDS words each, `count` of them. */
 typedef struct Ply {
@@ -25,22 +20,6 @@ W_INLINE float3 vertex(const Ply* ply, int i) {
                : stored(ply, 3) + (stored(ply, last) - stored(ply, 2));
 }
 
-/* Unit edge, or zero for a segment that is a point. */
-W_INLINE float3 unit_edge(float3 e, float r) {
-  const float l = length(e);
-  return l > W_POINT_SEGMENT * r ? e / l : (float3)(0.0f);
-}
-
-/* r tan(b/2) for the bend b between unit edges. */
-W_INLINE float mitre_reach(float3 t0, float3 t1, float r) {
-  return r * length(cross(t0, t1)) / fmax(1.0f + dot(t0, t1), 1e-6f);
-}
-
-/* The segment is too short for the mitres at its ends (a mitre is valid iff L >= r (tan(b0/2) + tan(b1/2))). */
-W_INLINE int bad_segment(float3 e, float3 t_before, float3 t, float3 t_after, float r) {
-  return dot(t, t) == 0.0f || mitre_reach(t_before, t, r) + mitre_reach(t, t_after, r) > length(e);
-}
-
 /* What lies at vertex v: its two unit edges and whether it gets a square cut and a sphere. The decision looks at v - 2
    to v + 2 only, so that every leaf that meets the joint takes the same. */
 typedef struct Joint {
@@ -58,16 +37,6 @@ W_INLINE Joint joint_at(const Ply* ply, int v, float r) {
   joint.cut = !ply->ghosts && (v == 0 || v == ply->count - 1);
   joint.cut |= dot(t1, t2) < W_MITRE_COS || bad_segment(c - b, t0, t1, t2, r) || bad_segment(d - c, t1, t2, t3, r);
   return joint;
-}
-
-/* Half extents of the disc square to t (t = 0: the sphere). */
-W_INLINE float3 disc_extent(float3 t, float r) { return r * sqrt(fmax((float3)(1.0f) - t * t, (float3)(0.0f))); }
-
-/* Half extents of the mitre ellipse of unit edges t0, t1 with s = t0 + t1: the half axes are r across the bend and
-   r/cos(b/2) in its plane, and along x they give r^2 (1 - m_x^2 + (t1 - t0)_x^2/|s|^2), m = s/|s|. */
-W_INLINE float3 mitre_extent(float3 t0, float3 t1, float r) {
-  const float3 s = t0 + t1, d = t1 - t0;
-  return r * sqrt(fmax((float3)(1.0f) + (d * d - s * s) / dot(s, s), (float3)(0.0f)));
 }
 
 /* patches: uint4 each: leaf offset (16-byte units), first vertex of the run's ply 0, vertices per ply, 1 if the run has

@@ -1,6 +1,7 @@
 /* The warp of the flat knit on to the base mesh (KNIT21 Algorithm 1): W(x, y, z) = P(b) + z N(b), with P and N the
    barycentric point and the unit interpolated normal of the anchor's triangle. geom/warp.h is its reference in double. */
 #pragma OPENCL FP_CONTRACT OFF
+#include "geometry/vertex_frame.clh"
 #include "shared/real.clh"
 #include "shared/wale_types.h"
 
@@ -39,11 +40,6 @@ __kernel void warp_points(__global const WAnchor* anchors, __global const float*
   v[6] = a.length;
 }
 
-static float3 unit_or_zero(float3 a) {
-  const float l = length(a);
-  return l > 1e-20f ? a / l : (float3)(0.0f);
-}
-
 /* Carries the frame normal (fx, fy, fz) of the flat knit through the Jacobian, J f = fx W_x + fy W_y + fz N with
      W_x = P_x + z N_x,   N_x = (M_x - N (N.M_x))/|M|,   M the interpolated normal before it is made unit,
    where P_x = P_b (db/dx) and db/d(x,y) is the inverse of the corners' cloth coordinates, cloth: x, y of three corners a
@@ -68,18 +64,5 @@ __kernel void warp_normals(__global const WAnchor* anchors, __global const float
   const float3 turn = (d1 * (c.n1 - c.n0) + d2 * (c.n2 - c.n0)) / ml;
   const float3 carried = point + a.height * (turn - dot(n, turn) * n) + a.nz * n;
 
-  __global float* v = vertices + (size_t)i * W_VERTEX_WORDS;
-  const float3 here = vload3(0, v);
-  const uchar flag = flags[i];
-  float3 tangent = (float3)(0.0f);
-  if (!(flag & 1)) tangent += unit_or_zero(here - vload3(0, v - W_VERTEX_WORDS));
-  if (!(flag & 2)) tangent += unit_or_zero(vload3(0, v + W_VERTEX_WORDS) - here);
-  tangent = unit_or_zero(tangent);
-  float3 out = carried - dot(carried, tangent) * tangent;
-  if (!(dot(out, out) > 1e-10f * dot(carried, carried)) || !w_is_finite(dot(out, out))) {
-    /* No direction is left: any one square to the ply. */
-    const float3 t = dot(tangent, tangent) > 0.0f ? tangent : (float3)(1, 0, 0);
-    out = fabs(t.x) < 0.6f ? (float3)(0, t.z, -t.y) : (float3)(-t.z, 0, t.x);
-  }
-  vstore3(normalize(out), 0, v + 3);
+  store_frame(vertices + (size_t)i * W_VERTEX_WORDS, carried, flags[i]);
 }
