@@ -47,5 +47,5 @@ __kernel void lattice_normals(__global const float* lattice, __global const uint
   if (i >= items) return;
   const Place place = place_of(i, lattice, tiles, run);
   const uint flag = (place.at == 0 ? 1u : 0u) | (place.at + 1 == (int)run.count ? 2u : 0u);
-  store_frame(vertices + (size_t)place.vertex * W_VERTEX_WORDS, w_tile_normal(place.tile, place.corner), flag);
+  w_store_frame(vertices + (size_t)place.vertex * W_VERTEX_WORDS, w_tile_normal(place.tile, place.corner), flag);
 }

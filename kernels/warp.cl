@@ -64,5 +64,5 @@ __kernel void warp_normals(__global const WAnchor* anchors, __global const float
   const float3 turn = (d1 * (c.n1 - c.n0) + d2 * (c.n2 - c.n0)) / ml;
   const float3 carried = point + a.height * (turn - dot(n, turn) * n) + a.nz * n;
 
-  store_frame(vertices + (size_t)i * W_VERTEX_WORDS, carried, flags[i]);
+  w_store_frame(vertices + (size_t)i * W_VERTEX_WORDS, carried, flags[i]);
 }

@@ -19,8 +19,6 @@ constexpr double kOffSurfaceFloat = 1e-6;  // the point is set back on its surfa
 constexpr double kPointFloat = 1e-4;       // what is promised; where |h| < 0.99 and the ray does not run along the axis
 constexpr double kPointDouble = 1e-9;      // the vertices' coordinates in double, 1e-16 of 1e6 radii
 
-constexpr double kFrameStored = 2e-5;  // radians: a frame made square to the ply, and unit, once more in float
-
 // Rays and plies at their limits.
 constexpr double kAcrossJoint = 5e-3;  // two rays 1e-3 radii beside a joint; a ply's frame turns by less than 2/r there
 constexpr double kCreepDepth = 1.001e-3;  // W_PARALLEL of the kernels is the square of 1e-3, rounded
