@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "host/fabric_device.h"
+#include "shared/wale_types.h"
 
 namespace wale {
 
@@ -21,6 +22,9 @@ struct Features {
   bool ply_colors = false;  ///< colours that vary over the cloth
   LocalStage local_stage = LocalStage::exact;
   int lanes = 1;
+
+  /// Camera rays go in packets of `lanes` (kernels/geometry/traverse_packet.clh).
+  bool packets() const { return (plies || fibres) && local_stage == LocalStage::exact && lanes == W_NODE_WIDTH; }
 
   /// Definitions for the kernels.
   std::string options() const;

@@ -7,6 +7,10 @@ std::vector<Stage> wavefront_stages(const Features& f) {
   return {
       {"stages/generate.cl", {"generate"}, true, "camera rays"},
       {"stages/intersect.cl", {"intersect"}, true, "nearest hits"},
+      {"stages/intersect_packets.cl",
+       {"intersect_packets"},
+       f.packets(),
+       f.packets() ? "nearest hits of camera rays, many at once" : "vectors or local stage do not suit packets"},
       {"stages/compact.cl", {"compact_count", "compact_scan", "compact_scatter"}, true, "queues"},
       {"stages/miss.cl",
        {"miss"},

@@ -98,8 +98,8 @@ void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
   auto& generate = kernel("generate");
   generate.setArg(1, camera_);
   set_args(generate, path(generate, 2), spare_list_.cl(), queue_counts_.cl());
-  auto& intersect = kernel("intersect");
-  scene_.bind_scene(intersect, path(intersect, 1));
+  for (const char* name : {"intersect", "intersect_packets"})
+    if (kernels_.contains(name)) scene_.bind_scene(kernel(name), path(kernel(name), 1));
   auto& miss = kernel("miss");
   cl_uint next = scene_.bind_lights(miss, path(miss, 1));
   set_args(miss, next, aov_.cl(), miss_list_.cl(), queue_counts_.cl(), kHits + 2);
@@ -175,7 +175,7 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
   frame.samples_before = first_sample;
   frame.samples_in_wave = samples;
   frame.paths = pixels * samples;
-  for (const char* name : {"generate", "intersect", "miss", "shade_ply", "shade_fibre", "shade_surface", "connect",
+  for (const char* name : {"generate", "intersect", "intersect_packets", "miss", "shade_ply", "shade_fibre", "shade_surface", "connect",
                            "accumulate", "accumulate_aov"})
     if (const auto found = kernels_.find(name); found != kernels_.end()) found->second.setArg(0, frame);
 
@@ -185,16 +185,17 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
   uint32_t count_index = kShaded[1], side = 0;
   std::array<std::array<uint32_t, kQueueCounts>, 2> lengths{};
   cl::Event read[2];
-  auto& intersect = kernel("intersect");
   for (uint32_t depth = 0;; ++depth) {
     if (depth == kDepthCap) {
       counts_.events[W_EVENT_PATH_CAP] += uint32_t(bound);
       break;
     }
     const auto& live = active_[side];
-    const uint32_t args = intersect.getInfo<CL_KERNEL_NUM_ARGS>();
-    set_args(intersect, args - 4, live.cl(), queue_counts_.cl(), count_index, depth);
-    launch("intersect", bound);
+    const bool packets = depth == 0 && features_.packets();
+    const std::string nearest = packets ? "intersect_packets" : "intersect";
+    const uint32_t args = kernel(nearest).getInfo<CL_KERNEL_NUM_ARGS>();
+    set_args(kernel(nearest), args - 4, live.cl(), queue_counts_.cl(), count_index, depth);
+    launch(nearest, packets ? bound / size_t(features_.lanes) + 1 : bound);
     compact(live, count_index, kHits, bound, ply_list_, surface_list_, miss_list_);
     launch("miss", bound);
     for (const char* name : {"shade_ply", "shade_fibre", "shade_surface"})

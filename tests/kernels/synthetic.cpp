@@ -14,6 +14,9 @@ namespace {
 using std::numbers::pi;
 
 constexpr const char* kTrace = R"(
+#if W_LANES == 16
+#include "geometry/traverse_packet.clh"
+#endif
 W_INLINE WScene scene_of(__global const uint* nodes, __global const uint* leaves, uint root, __global uint* counters) {
   WScene s;
   s.nodes = nodes;
@@ -32,6 +35,28 @@ __kernel void trace(__global const uint* nodes, __global const uint* leaves, uin
   const WRay r = ray_of(rays + i);
   write_hit(&s, &r, hits + i);
 }
+#if W_LANES == 16
+__kernel void trace_packets(__global const uint* nodes, __global const uint* leaves, uint root,
+                            __global uint* counters, __global const TestRay* rays, __global TestHit* hits, uint count) {
+  const uint first = get_global_id(0) * W_LANES;
+  if (first >= count) return;
+  const uint own = min(count - first, (uint)W_LANES);
+  const WScene s = scene_of(nodes, leaves, root, counters);
+  WRay alone[W_LANES];
+  for (uint i = 0; i < own; ++i) alone[i] = ray_of(rays + first + i);
+  WPacket packet;
+  w_closest_packet(&s, alone, own, &packet);
+  for (uint i = 0; i < own; ++i) {
+    const WHit hit = w_packet_hit(&packet, i);
+    hits[first + i].t = hit.t;
+    hits[first + i].kind = hit.kind;
+    hits[first + i].code = hit.code;
+    hits[first + i].u = hit.u;
+    hits[first + i].v = hit.v;
+    hits[first + i].occluded = 0;
+  }
+}
+#endif
 __kernel void closest(__global const uint* nodes, __global const uint* leaves, uint root, __global uint* counters,
                       __global const TestRay* rays, __global float* out, uint count) {
   const uint i = get_global_id(0);
@@ -174,10 +199,11 @@ Tracer::Tracer(const Device& device, const Strands& strands)
 }
 
 template <typename Real>
-std::vector<HitOf<Real>> Tracer::trace_as(const std::vector<Ray>& rays, const std::string& options) {
+std::vector<HitOf<Real>> Tracer::trace_as(const std::vector<Ray>& rays, const std::string& options, const char* name,
+                                          size_t rays_per_item) {
   const Buffer<Ray> in(device_, rays);
   const Buffer<HitOf<Real>> out(device_, rays.size());
-  cl::Kernel kernel(program(options), "trace");
+  cl::Kernel kernel(program(options), name);
   kernel.setArg(0, tree_.nodes.cl());
   kernel.setArg(1, tree_.leaves.cl());
   kernel.setArg(2, tree_.root);
@@ -185,10 +211,14 @@ std::vector<HitOf<Real>> Tracer::trace_as(const std::vector<Ray>& rays, const st
   kernel.setArg(4, in.cl());
   kernel.setArg(5, out.cl());
   kernel.setArg(6, uint32_t(rays.size()));
-  device_.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device_.global(rays.size()), device_.local());
+  const size_t items = (rays.size() + rays_per_item - 1) / rays_per_item;
+  device_.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device_.global(items), device_.local());
   return out.read(device_);
 }
 
+std::vector<Hit> Tracer::trace_packets(const std::vector<Ray>& rays) {
+  return trace_as<float>(rays, "-DW_LANES=16", "trace_packets", W_NODE_WIDTH);
+}
 std::vector<Hit> Tracer::trace(const std::vector<Ray>& rays, const std::string& options) {
   return trace_as<float>(rays, options);
 }
