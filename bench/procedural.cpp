@@ -1,6 +1,7 @@
 // Stored against procedural leaves of one lattice. Usage: procedural_bench [segments] [rays per side] [cells] [stored].
-// Prints bytes a segment, seconds of the build, million rays per CPU-second and the ratio of the two, each the median of
-// five interleaved launches, and how many hits differ. With 0 as `stored` the procedural form is measured alone.
+// Prints how far the lattice's warp is from the mesh's, bytes a segment, seconds of the build, million rays per
+// CPU-second and the ratio of the two, each the median of five interleaved launches, and how many hits differ. With 0
+// as `stored` the procedural form is measured alone.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -13,6 +14,7 @@
 
 #include "geom/base_mesh_generators.h"
 #include "geom/lattice_fabric.h"
+#include "geom/warp.h"
 #include "tests/kernels/fabric_tracer.h"
 
 namespace {
@@ -50,7 +52,8 @@ Held hold(const BaseMesh& mesh, const Pattern& pattern, FabricSpec spec, Storage
   getrusage(RUSAGE_SELF, &usage);
   fmt::print(
       "{:10} {} segments, {} leaves, {:.2f} B a segment to trace ({:.2f} nodes, {:.2f} lattice and tile tables, {:.2f} "
-      "leaves), {:.2f} in vertices; lattice {:.2f} s, upload {:.2f} s (warp {:.2f}, pack {:.2f}, tree {:.2f}); peak {:.0f} "
+      "leaves), {:.2f} in vertices; lattice {:.2f} s, upload {:.2f} s (warp {:.2f}, pack {:.2f}, tree {:.2f}); peak "
+      "{:.0f} "
       "MB\n",
       storage == Storage::stored ? "stored" : "procedural", f.segment_count, f.patch_count,
       double(f.tree.nodes.bytes() + f.lattice.bytes() * (storage == Storage::procedural) + f.tree.leaves.bytes()) / n,
@@ -58,6 +61,42 @@ Held hold(const BaseMesh& mesh, const Pattern& pattern, FabricSpec spec, Storage
       double(f.vertices.bytes()) / n, held.knit_seconds, held.upload_seconds, f.warp_seconds, f.pack_seconds,
       f.build_seconds, double(usage.ru_maxrss) / 1024);
   return held;
+}
+
+// Distance of the lattice's warp from that of the mesh, in ply radii: median and largest over the plies' vertices.
+void print_accuracy(const BaseMesh& mesh, const Pattern& pattern, FabricSpec spec) {
+  for (const int cells : {1, 2, 4, 8}) {
+    spec.lattice = cells;
+    const Fabric fabric = knit_lattice(mesh, pattern, spec);
+    const Chart& chart = fabric.charts[0];
+    const auto& [lattice, tile] = fabric.lattice[0];
+    const ChartLocator locator(mesh, chart);
+    const dvec2 tile_uv = (chart.uv_max - chart.uv_min) / dvec2(lattice.tiles);
+    std::vector<double> radii;
+    const int step = std::max(1, lattice.tiles.x / 16);
+    for (int y = 0; y < lattice.tiles.y; y += step)
+      for (int x = 0; x < lattice.tiles.x; x += step)
+        for (const TileYarn& yarn : tile.yarns)
+          for (uint32_t k = 0; k < yarn.samples; ++k) {
+            const TileVertex& v = yarn.at(0, int(k));
+            dvec3 warped(0);
+            double height = 0;
+            for (int c = 0; c < 4; ++c) {
+              const ivec2 at = v.cell + ivec2(c & 1, c >> 1);
+              const size_t i = size_t(int64_t(lattice.corner({x, y})) + at.x + int64_t(at.y) * lattice.size.x);
+              warped += double(v.w[c]) * lattice.position[i] + double(v.h[c]) * lattice.normal[i];
+              height += double(v.h[c]);
+            }
+            const dvec2 f(double(v.w[1]) + v.w[3], double(v.w[2]) + v.w[3]);
+            ChartPoint point;
+            const dvec2 uv = chart.uv_min + tile_uv * (dvec2(x, y) + (dvec2(v.cell) + f) / double(cells));
+            if (locator.locate(uv, 0, chart.metres_per_uv, point))
+              radii.push_back(glm::length(warped - warp_point(mesh, point, height)) / fabric.ply_radius);
+          }
+    std::sort(radii.begin(), radii.end());
+    fmt::print("{} cells along a tile of {:.2f} mm: off the mesh's warp by {:.4f} radii (median), {:.4f} (largest)\n",
+               cells, 1e3 * fabric.report.tile_metres.x, radii[radii.size() / 2], radii.back());
+  }
 }
 
 uint32_t every_second_bit(uint32_t x) {
@@ -114,6 +153,7 @@ int main(int argc, char** argv) {
   const double per_area = double(estimate_segments(probe, pattern, spec)) / 0.01;
   const BaseMesh mesh = sheet(std::sqrt(wanted / per_area));
   fmt::print("{}\n", test_device().traits().name);
+  print_accuracy(mesh, pattern, spec);
   const Held procedural = hold(mesh, pattern, spec, Storage::procedural);
   Held stored;
   if (both) stored = hold(mesh, pattern, spec, Storage::stored);

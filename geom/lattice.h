@@ -12,13 +12,13 @@ namespace wale {
 /// tile, W = P + z N with P and N bilinear in each of its cells (KNIT21 section 3.1). Columns and rows go on past the
 /// chart as far as plies do; where the chart is joined to itself they are copies, bit by bit.
 struct Lattice {
-  ivec2 tiles{1, 1};             ///< columns and rows of whole tiles that cover the chart
-  ivec2 wrap{0, 0};              ///< 1 where the last tile joins the first
-  int cells = 1;                 ///< along each side of a tile
-  ivec2 margin{0, 0};            ///< cells before the first tile
-  ivec2 size{0, 0};              ///< vertices
-  std::vector<dvec3> position;   ///< metres; vertex (x, y) at x + size.x * y
-  std::vector<dvec3> normal;     ///< unit
+  ivec2 tiles{1, 1};            ///< columns and rows of whole tiles that cover the chart
+  ivec2 wrap{0, 0};             ///< 1 where the last tile joins the first
+  int cells = 1;                ///< along each side of a tile
+  ivec2 margin{0, 0};           ///< cells before the first tile
+  ivec2 size{0, 0};             ///< vertices
+  std::vector<dvec3> position;  ///< metres; vertex (x, y) at x + size.x * y
+  std::vector<dvec3> normal;    ///< unit
   /// Number of the vertex at the corner of a tile.
   uint32_t corner(ivec2 tile) const {
     return uint32_t(tile.x * cells + margin.x) + uint32_t(size.x) * uint32_t(tile.y * cells + margin.y);

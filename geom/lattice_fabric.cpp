@@ -54,8 +54,8 @@ Fabric knit_lattice(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spe
     const dvec3 scale(tile / pattern.period, chart_map.scale.z);
     LatticeChart made;
     made.tile = knit_tile(pattern, partners, map.yarn, scale, cells, spec.height_offset);
-    made.lattice = sample_lattice(fabric.mesh, chart, origin, tile_uv, tiles, wrap, cells, made.tile.reach_lo,
-                                  made.tile.reach_hi);
+    made.lattice =
+        sample_lattice(fabric.mesh, chart, origin, tile_uv, tiles, wrap, cells, made.tile.reach_lo, made.tile.reach_hi);
     for (const TileYarn& yarn : made.tile.yarns) {
       const size_t lines = size_t(tiles[1 - yarn.axis]), along = size_t(tiles[yarn.axis]);
       report.full_yarns += lines;

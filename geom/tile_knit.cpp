@@ -34,7 +34,8 @@ TileVertex tie(const dvec3& position, const dvec3& normal, double height, dvec2 
 }  // namespace
 
 std::string tile_knit_obstacle(const Pattern& pattern, const PartnerMap& partners, int plies) {
-  if (plies > kMostPlies) return fmt::format("yarns of {} plies: at most {} can be warped on the fly", plies, kMostPlies);
+  if (plies > kMostPlies)
+    return fmt::format("yarns of {} plies: at most {} can be warped on the fly", plies, kMostPlies);
   for (const YarnChain& yarn : tile_yarns(pattern, partners))
     if (yarn.shift != ivec2(1, 0) && yarn.shift != ivec2(0, 1))
       return fmt::format("pattern '{}' has a yarn that goes on {} columns and {} rows further, not in the next tile",

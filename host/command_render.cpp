@@ -37,7 +37,7 @@ Stats stats_of(const Scene& scene, const Device& device, const World& world, con
   uint64_t segments = 0, vertices = 0;
   for (const auto& f : world.fabrics) segments += f.report.segments, vertices += f.report.vertices;
   const auto bytes = on_device.bytes();
-  s.geometry["ply segments"] = {segments, bytes.at("ply leaves") + bytes.at("ply tree")};
+  s.geometry["ply segments"] = {segments, bytes.at("ply leaves") + bytes.at("ply tree") + bytes.at("lattices")};
   s.geometry["ply vertices"] = {vertices, bytes.at("ply vertices")};
   s.geometry["triangles"] = {world.triangle_count(), bytes.at("triangles")};
   s.geometry["path state"] = {r.pool, r.path_bytes};

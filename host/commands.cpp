@@ -76,9 +76,10 @@ int run_export(const SceneArgs& args, const std::filesystem::path& output, const
   Scene scene = read_scene(args.scene, args.set);
   for (FabricScene& fabric : scene.fabrics) {
     if (fabric.spec.lattice > 0 || fabric.spec.storage == Storage::procedural)
-      user_error("export: fabric \"{}\" is held as a lattice, which is not written; give \"storage\": \"stored\" and no "
-                 "\"lattice\"",
-                 fabric.spec.name);
+      user_error(
+          "export: fabric \"{}\" is held as a lattice, which is not written; give \"storage\": \"stored\" and no "
+          "\"lattice\"",
+          fabric.spec.name);
     fabric.spec.storage = Storage::stored;
   }
   const Device device = Device::open(args.device);

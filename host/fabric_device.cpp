@@ -95,13 +95,6 @@ dvec2 cell_corner(const UvGrid& grid, uint32_t local) {
   return grid.origin + grid.cell_size * dvec2(local % uint32_t(grid.size.x), local / uint32_t(grid.size.x));
 }
 
-void join(Box& a, const Box& b) {
-  for (int k = 0; k < 3; ++k) {
-    a.lo[k] = std::min(a.lo[k], b.lo[k]);
-    a.hi[k] = std::max(a.hi[k], b.hi[k]);
-  }
-}
-
 // Bounds of the base triangles of every cell of one fabric, each clipped to its cell. Across a join a triangle may lie
 // whole periods away from the cell that lists it.
 void append_group_boxes(std::vector<Box>& boxes, const Fabric& fabric, dvec3 origin, size_t first_cell) {
@@ -213,7 +206,7 @@ FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> i
     out.first_cell.push_back(uint32_t(out.cell_count));
     out.first_triangle.push_back(uint32_t(warp_input.triangles.size() / 3));
     if (fabric.lattice.empty()) append(warp_input, fabric, origin);  // a lattice needs no mesh
-    std::vector<uint32_t> first_curve;  // per run, over all fabrics
+    std::vector<uint32_t> first_curve;                               // per run, over all fabrics
     for (const PlyRun& run : fabric.runs) {
       first_curve.push_back(uint32_t(curves));
       curves += run.plies;
@@ -231,9 +224,10 @@ FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> i
     if (!fabric.lattice.empty()) lattices.push_back({&fabric, f, inputs[f].material, inputs[f].tau});
   }
   if (!lattices.empty() && stage != LocalStage::exact)
-    user_error("fabric '{}': it is held as a lattice, which has no UV cells; use integrator.local_stage \"exact\", or "
-               "storage \"stored\" and no lattice",
-               lattices[0].fabric->name);
+    user_error(
+        "fabric '{}': it is held as a lattice, which has no UV cells; use integrator.local_stage \"exact\", or "
+        "storage \"stored\" and no lattice",
+        lattices[0].fabric->name);
   LatticeFabrics placed;
   if (!lattices.empty()) placed = place_lattices(device, lattices, origin, warp_input.anchors.size(), curves);
   for (const PlyPatch& p : placed.patches) out.segment_count += size_t(p.intervals) * p.plies;

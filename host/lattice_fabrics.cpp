@@ -1,6 +1,6 @@
 #include "host/lattice_fabrics.h"
 
-#include <algorithm>
+#include <utility>
 
 #include "geom/error.h"
 
@@ -15,10 +15,19 @@ size_t vertices_of(const Fabric& fabric) {
     for (const TileYarn& yarn : chart.tile.yarns) {
       const ivec2 tiles = chart.lattice.tiles;
       const size_t ends = chart.lattice.wrap[yarn.axis] ? 3 : 1;
-      vertices += size_t(tiles[1 - yarn.axis]) * size_t(chart.tile.plies) *
-                  (size_t(tiles[yarn.axis]) * yarn.samples + ends);
+      vertices +=
+          size_t(tiles[1 - yarn.axis]) * size_t(chart.tile.plies) * (size_t(tiles[yarn.axis]) * yarn.samples + ends);
     }
   return vertices;
+}
+
+// Without a copy where `all` is empty, as it is for the one large fabric of most scenes.
+template <typename T>
+void append(std::vector<T>& all, std::vector<T>&& more) {
+  if (all.empty())
+    all = std::move(more);
+  else
+    all.insert(all.end(), more.begin(), more.end());
 }
 
 }  // namespace
@@ -59,15 +68,15 @@ LatticeFabrics place_lattices(const Device& device, std::vector<LatticeInput> in
       }
       std::vector<uint32_t> leaves = tables.leaves(fabric);
       uint32_t tight = 0;
-      const std::vector<Box> boxes = out.device.boxes(device, leaves, tight);
+      std::vector<Box> boxes = out.device.boxes(device, leaves, tight);
       if (tight > 0) {
         all_tight += tight;
         stored[i] = again = true;
         continue;
       }
       for (uint32_t& leaf : leaves) leaf |= W_LEAF_PROCEDURAL;
-      out.procedural.number.insert(out.procedural.number.end(), leaves.begin(), leaves.end());
-      out.procedural.box.insert(out.procedural.box.end(), boxes.begin(), boxes.end());
+      append(out.procedural.number, std::move(leaves));
+      append(out.procedural.box, std::move(boxes));
       out.segments += inputs[i].fabric->report.segments;
     }
     if (!again) return out;

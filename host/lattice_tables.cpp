@@ -34,8 +34,9 @@ LatticeTables::LatticeTables(std::span<const LatticeInput> inputs, dvec3 origin)
   const size_t entries = pieces_.back().first_entry + pieces_.back().entries.size();
   patch_bits_ = uint32_t(std::bit_width(entries - 1));
   if (lattice_.size() / W_LATTICE_WORDS << patch_bits_ > W_LEAF_PROCEDURAL)
-    user_error("fabrics: {} tile patches at {} lattice vertices cannot be numbered; use fewer repeats or a coarser lattice",
-               entries, lattice_.size() / W_LATTICE_WORDS);
+    user_error(
+        "fabrics: {} tile patches at {} lattice vertices cannot be numbered; use fewer repeats or a coarser lattice",
+        entries, lattice_.size() / W_LATTICE_WORDS);
   words_.resize(entries * W_PATCH_WORDS, 0);
   for (Piece& piece : pieces_) {
     for (size_t y = 0; y < piece.runs.size(); ++y) {
@@ -48,8 +49,14 @@ LatticeTables::LatticeTables(std::span<const LatticeInput> inputs, dvec3 origin)
             stored_length(0, p, piece.input.fabric->ply_radius, piece.input.fabric->fibre_twist, lap);
         for (uint32_t k = 0; k <= yarn.samples; ++k) {
           const TileVertex& v = yarn.at(p, int(k));
-          WTileVertex out{lattice_offset(piece.chart->lattice, v.cell), fixed_length(v.length, stored),
-                          fixed_length(yarn.lap[p], stored), lattice_offset(piece.chart->lattice, {0, 1}), {}, {}, {}, {}};
+          WTileVertex out{lattice_offset(piece.chart->lattice, v.cell),
+                          fixed_length(v.length, stored),
+                          fixed_length(yarn.lap[p], stored),
+                          lattice_offset(piece.chart->lattice, {0, 1}),
+                          {},
+                          {},
+                          {},
+                          {}};
           std::copy_n(v.w, 4, out.w), std::copy_n(v.h, 4, out.h);
           std::copy_n(v.a, 4, out.a), std::copy_n(v.b, 4, out.b);
           const auto raw = std::bit_cast<std::array<uint32_t, sizeof(WTileVertex) / 4>>(out);

@@ -56,7 +56,8 @@ class LatticeTables {
     std::vector<Entry> entries;
     std::vector<WLatticeRun> runs;  ///< per yarn
   };
-  void add_chart(const LatticeInput& input, const LatticeChart& chart, uint32_t& vertices, uint32_t& plies, dvec3 origin);
+  void add_chart(const LatticeInput& input, const LatticeChart& chart, uint32_t& vertices, uint32_t& plies,
+                 dvec3 origin);
   void write_entry(Piece& piece, size_t number);
   void write_rows(const Piece& piece, const Entry& entry, uint32_t* head);
   /// Calls visit(piece, entry number, tile) in the order of leaf numbers.

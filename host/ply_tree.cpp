@@ -45,13 +45,6 @@ void refuse_if_too_far(const PlyPatch& patch, const Box& box) {
           patch.fabric, patch.radius, box.lo[k], box.hi[k], kLargestCoordinate);
 }
 
-void join(Box& a, const Box& b) {
-  for (int k = 0; k < 3; ++k) {
-    a.lo[k] = std::min(a.lo[k], b.lo[k]);
-    a.hi[k] = std::max(a.hi[k], b.hi[k]);
-  }
-}
-
 }  // namespace
 
 PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, const Buffer<float>& vertices,
@@ -68,7 +61,8 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
     tree.leaf_offset.push_back(uint32_t(words / 4));
     words += W_LEAF_HEADER + 3 * leaf_stride(patch);
   }
-  if (words / 4 >= (procedural.number.empty() ? 1u << 28 : W_LEAF_PROCEDURAL) || words * 4 > device.traits().max_alloc_bytes)
+  if (words / 4 >= (procedural.number.empty() ? 1u << 28 : W_LEAF_PROCEDURAL) ||
+      words * 4 > device.traits().max_alloc_bytes)
     device_error("ply tree: leaves of {} MB do not fit one buffer of {}; use fewer repeats", words * 4 >> 20,
                  device.traits().name);
   words += kTail;

@@ -41,7 +41,8 @@ std::vector<FabricInput> inputs_of(const World& world) {
 SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage stage)
     : device_(device),
       stage_(stage),
-      procedural_(std::any_of(world.fabrics.begin(), world.fabrics.end(), [](const Fabric& f) { return f.procedural; })),
+      procedural_(
+          std::any_of(world.fabrics.begin(), world.fabrics.end(), [](const Fabric& f) { return f.procedural; })),
       fabric_(upload_fabrics(device, inputs_of(world), world.origin, stage)) {
   const TriangleTree tree = build_triangle_tree(corners_of(world.triangles));
   ply_materials_ = Buffer<WPlyMaterial>(device, world.ply_materials);

@@ -14,8 +14,7 @@ StorageChoice choose_storage(const BaseMesh& mesh, const Pattern& pattern, const
   const bool large = spec.storage == Storage::automatic && estimate_segments(mesh, pattern, spec) >= kProceduralFrom;
   if (!asked && !large)
     return {Storage::stored, false, fmt::format("fewer than {:.0e} segments", double(kProceduralFrom))};
-  const std::string why =
-      whole_scene_obstacle.empty() ? lattice_obstacle(mesh, pattern, spec) : whole_scene_obstacle;
+  const std::string why = whole_scene_obstacle.empty() ? lattice_obstacle(mesh, pattern, spec) : whole_scene_obstacle;
   if (!why.empty()) {
     if (asked)
       user_error("fabric \"{}\": a lattice cannot hold it: {}; give \"storage\": \"stored\" and no \"lattice\"",

@@ -76,11 +76,13 @@ class Builder {
     double change = 0;
     for (const LatticeChart& chart : fabric.lattice)
       for (const TileYarn& yarn : chart.tile.yarns) change = std::max(change, std::abs(yarn.twist_change));
-    world_.notes.push_back(fmt::format(
-        "fabric \"{}\": held as a lattice of {} cell(s) along a tile's side, {} ({}); its twist changes by {:.3g} turns "
-        "per metre so that tiles join",
-        fabric.name, fabric.lattice[0].lattice.cells,
-        choice.storage == Storage::procedural ? "points warped where needed" : "points stored", choice.because, change));
+    world_.notes.push_back(
+        fmt::format("fabric \"{}\": held as a lattice of {} cell(s) along a tile's side, {} ({}); its twist changes by "
+                    "{:.3g} turns "
+                    "per metre so that tiles join",
+                    fabric.name, fabric.lattice[0].lattice.cells,
+                    choice.storage == Storage::procedural ? "points warped where needed" : "points stored",
+                    choice.because, change));
   }
 
   void knit_all() {

@@ -5,7 +5,9 @@
 
 #include <bit>
 #include <random>
+#include <stdexcept>
 
+#include "geom/run_tasks.h"
 #include "shared/wale_types.h"
 
 namespace wale {
@@ -105,6 +107,52 @@ TEST(WideTree, SameInputSameBytes) {
   const Items items = random_items(3000, 12, false, 9);
   EXPECT_EQ(build_wide_tree(items.boxes, items.codes, items.groups, {}).words,
             build_wide_tree(items.boxes, items.codes, items.groups, {}).words);
+}
+
+// Parts large enough to be handed to threads, with and without groups.
+TEST(WideTree, TheNumberOfThreadsChangesNothing) {
+  for (size_t per_group : {1, 9000}) {
+    const Items items = random_items(40000, per_group, false, 3);
+    for (const bool grouped : {false, true}) {
+      const std::span<const uint32_t> groups =
+          grouped ? std::span<const uint32_t>(items.groups) : std::span<const uint32_t>{};
+      const WideTree one = build_wide_tree(items.boxes, items.codes, groups, {}, 1);
+      for (unsigned threads : {2, 3, 8}) {
+        const WideTree several = build_wide_tree(items.boxes, items.codes, groups, {}, threads);
+        EXPECT_EQ(one.words, several.words);
+        EXPECT_EQ(one.node_cell, several.node_cell);
+        EXPECT_EQ(one.parent, several.parent);
+      }
+    }
+  }
+}
+
+TEST(WideTree, NodesStandLevelByLevelAndNameTheirParents) {
+  for (const bool grouped : {false, true}) {
+    const Items items = random_items(5000, 20, false, 4);
+    const WideTree tree = build_wide_tree(
+        items.boxes, items.codes, grouped ? std::span<const uint32_t>(items.groups) : std::span<const uint32_t>{}, {});
+    ASSERT_EQ(tree.parent.size(), tree.nodes());
+    ASSERT_EQ(tree.level_offset.back(), tree.nodes());
+    EXPECT_EQ(tree.parent[0], W_NONE);
+    ASSERT_GT(tree.level_offset.size(), 3u);
+    for (size_t level = 1; level + 1 < tree.level_offset.size(); ++level)
+      for (uint32_t node = tree.level_offset[level]; node < tree.level_offset[level + 1]; ++node) {
+        const uint32_t parent = tree.parent[node] / W_NODE_WIDTH, slot = tree.parent[node] % W_NODE_WIDTH;
+        EXPECT_GE(parent, tree.level_offset[level - 1]);
+        EXPECT_LT(parent, tree.level_offset[level]);
+        EXPECT_EQ(tree.words[size_t(parent) * W_NODE_WORDS + 96 + slot] & W_CHILD_INDEX, node);
+      }
+  }
+}
+
+TEST(WideTree, WhatATaskThrowsReachesTheCaller) {
+  const auto work = [](int task, const auto& add) {
+    if (task > 40) throw std::runtime_error("task");
+    add(task + 1);
+    add(task + 2);
+  };
+  for (unsigned threads : {1, 3}) EXPECT_THROW(run_tasks(threads, std::vector{0}, work), std::runtime_error);
 }
 
 TEST(WideTree, GroupBoxesWidenTheirGroup) {

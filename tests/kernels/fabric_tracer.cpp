@@ -101,7 +101,7 @@ cl::Kernel FabricTracer::bound(const char* name, const Buffer<Ray>& rays, size_t
   const std::string lanes = twice ? "-DW_DOUBLE -DW_LANES=1" : fmt::format("-DW_LANES={}", device_.traits().lanes);
   const std::string options =
       fmt::format("-DW_HAS_PLIES {} -DW_LOCAL_STAGE={}{}", lanes, int(stage_), fibres_ ? " -DW_HAS_FIBRES" : "") +
-                              (procedural_ ? " -DW_HAS_PROCEDURAL" : "");
+      (procedural_ ? " -DW_HAS_PROCEDURAL" : "");
   auto& program = programs_[twice];
   if (!program()) program = build_program_text(device_, std::string(kTraceTypes) + kKernels, options);
   cl::Kernel kernel(program, name);

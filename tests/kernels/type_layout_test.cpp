@@ -23,9 +23,9 @@ __kernel void sizes(__global uint* out) {
   cl::Kernel kernel(program, "sizes");
   kernel.setArg(0, out.cl());
   device.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device.global(1), device.local());
-  const std::vector<uint32_t> expected = {sizeof(WAnchor),          sizeof(WGrid),       sizeof(WPlyMaterial),
-                                          sizeof(WSurfaceMaterial), sizeof(WLight),      sizeof(WSphere),
-                                          sizeof(WEnvironment),     sizeof(WCamera),     sizeof(WFrame),
+  const std::vector<uint32_t> expected = {sizeof(WAnchor),          sizeof(WGrid),        sizeof(WPlyMaterial),
+                                          sizeof(WSurfaceMaterial), sizeof(WLight),       sizeof(WSphere),
+                                          sizeof(WEnvironment),     sizeof(WCamera),      sizeof(WFrame),
                                           sizeof(WFibreMaterial),   sizeof(WFibreDetail), sizeof(WTileVertex),
                                           sizeof(WLatticeRun)};
   EXPECT_EQ(out.read(device), expected);
