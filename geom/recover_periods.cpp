@@ -36,15 +36,17 @@ struct Match {
   ivec2 crossings{0, 0};
 };
 
-/// Pairs every end with its nearest end under the periods; counts those that are nearest to each other.
-Match match(const std::vector<End>& ends, const NearPoints& places, dvec2 period, double tolerance) {
+/// Pairs every end with its nearest end under the periods; counts those that are nearest to each other. Gives up,
+/// counting none, once fewer than `wanted` can be: most periods that are tried leave an end alone at once.
+Match match(const std::vector<End>& ends, const NearPoints& places, dvec2 period, double tolerance, int wanted) {
   struct Nearest {
     size_t to = 0;
     ivec2 shift{0, 0};
     double distance = std::numeric_limits<double>::infinity();
   };
   std::vector<Nearest> nearest(ends.size());
-  for (size_t i = 0; i < ends.size(); ++i)
+  int possible = static_cast<int>(ends.size());
+  for (size_t i = 0; i < ends.size(); ++i) {
     for (int y = -1; y <= 1; ++y)
       for (int x = -1; x <= 1; ++x) {
         const dvec3 shift(x * period.x, y * period.y, 0);
@@ -58,6 +60,8 @@ Match match(const std::vector<End>& ends, const NearPoints& places, dvec2 period
         places.visit_near(ends[i].point - shift, consider);                         // overlap by one point
         if (ends[i].has_inner) places.visit_near(ends[i].inner - shift, consider);  // by two
       }
+    if (!(nearest[i].distance <= tolerance) && --possible < wanted) return {};
+  }
   Match result;
   for (size_t i = 0; i < ends.size(); ++i) {
     const Nearest& to = nearest[i];
@@ -131,26 +135,29 @@ dvec2 recover_periods(const Pattern& pattern, dvec2 known, double tolerance, con
       user_error("{}: no two curve ends lie one {} period apart; give the period", file.string(),
                  axis == 0 ? "x" : "y");
   }
+  const int all = static_cast<int>(ends.size());
   dvec2 best{0, 0};
   Match best_match;
   for (const Candidate& x : along[0])
     for (const Candidate& y : along[1]) {
-      const Match tried = match(ends, places, {x.period, y.period}, tolerance);
-      const bool better = tried.paired > best_match.paired ||
-                          (tried.paired == best_match.paired && tried.paired > 0 && tried.worst < best_match.worst);
-      if (better) best = {x.period, y.period}, best_match = tried;
+      const Match tried = match(ends, places, {x.period, y.period}, tolerance, all);
+      if (tried.paired < all || (best_match.paired == all && tried.worst >= best_match.worst)) continue;
+      best = {x.period, y.period}, best_match = tried;
     }
-  if (best_match.paired < static_cast<int>(ends.size()))
-    user_error("{}: the periods cannot be recovered: {} of {} curve ends find a partner at best; give the period",
-               file.string(), best_match.paired, ends.size());
+  if (best_match.paired < all) {
+    const dvec2 likeliest(along[0][0].period, along[1][0].period);
+    user_error(
+        "{}: the periods cannot be recovered: with {:.6g} x {:.6g} m, the likeliest, {} of {} curve ends find a "
+        "partner; give the period",
+        file.string(), likeliest.x, likeliest.y, match(ends, places, likeliest, tolerance, 0).paired, all);
+  }
   // The mean over all crossings is exact where the file is, and least squares where it is not.
-  const Match refined = match(ends, places, best, tolerance);
   for (const int axis : {0, 1}) {
     if (known[axis] > 0) continue;
-    if (refined.crossings[axis] == 0)
+    if (best_match.crossings[axis] == 0)
       user_error("{}: no curve crosses the {} border, so that period is unknown; give the period", file.string(),
                  axis == 0 ? "x" : "y");
-    best[axis] = refined.sum[axis] / refined.crossings[axis];
+    best[axis] = best_match.sum[axis] / best_match.crossings[axis];
   }
   return best;
 }

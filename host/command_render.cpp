@@ -1,12 +1,16 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <future>
+#include <memory>
 
 #include "geom/error.h"
 #include "host/atomic_file.h"
 #include "host/commands.h"
+#include "host/memory_needs.h"
 #include "host/progress.h"
 #include "host/rare_events.h"
+#include "host/rehearsal.h"
 #include "host/render.h"
 #include "host/stop.h"
 
@@ -23,38 +27,101 @@ void apply_size(const std::string& size, FilmScene& film) {
   film.height = h;
 }
 
-Stats stats_of(const Scene& scene, const Device& device, const World& world, const SceneDevice& on_device,
+// The devices of a render and the scene on each of them.
+class Devices {
+ public:
+  explicit Devices(const std::string& text) {
+    for (const unsigned number : device_numbers(text)) open_.push_back(Device::open(number));
+  }
+
+  // At the same time: each device warps, packs and builds its own tree, as its rounding may be its own.
+  void upload(const World& world, const IntegratorScene& integrator, const RenderOptions& options) {
+    for (const Device& device : open_) {
+      const DeviceTraits& traits = device.traits();
+      const Features features = analyse(world, integrator, options.aovs, int(traits.lanes));
+      require_memory(device, memory_needs(world, features, pool_of(traits, integrator, options), traits));
+    }
+    const LocalStage stage = local_stage(integrator);
+    std::vector<std::future<std::unique_ptr<SceneDevice>>> scenes;
+    for (const Device& device : open_)
+      scenes.push_back(std::async(open_.size() > 1 ? std::launch::async : std::launch::deferred,
+                                  [&] { return std::make_unique<SceneDevice>(device, world, stage); }));
+    for (auto& scene : scenes) scenes_.push_back(scene.get());
+    for (size_t d = 0; d < open_.size(); ++d) list_.push_back({&open_[d], scenes_[d].get()});
+  }
+
+  const std::vector<Device>& open() const { return open_; }
+  const std::vector<RenderDevice>& list() const { return list_; }
+
+ private:
+  std::vector<Device> open_;
+  std::vector<std::unique_ptr<SceneDevice>> scenes_;
+  std::vector<RenderDevice> list_;
+};
+
+// Wall seconds of the steps that lead to the first sample.
+class Start {
+ public:
+  void step(const std::string& name) {
+    const double now = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    steps_.emplace_back(name, now - last_);
+    last_ = now;
+  }
+  void step(const std::string& name, double seconds) {
+    steps_.emplace_back(name, seconds);
+    last_ += seconds;
+  }
+  double seconds() const { return last_; }
+  const std::vector<std::pair<std::string, double>>& steps() const { return steps_; }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  double last_ = 0;
+  std::vector<std::pair<std::string, double>> steps_;
+};
+
+Stats stats_of(const Scene& scene, const World& world, const std::vector<RenderDevice>& devices,
                const Features& features, const Rendered& r) {
   Stats s;
   s.scene = scene.file;
-  s.device = device.traits().name;
-  s.driver = device.traits().driver;
-  s.platform = device.traits().platform;
-  s.kernel_options = device.traits().build_options;
+  const Device& first = *devices.front().device;
+  const SceneDevice& on_first = *devices.front().scene;
+  s.device = first.traits().name;
+  s.driver = first.traits().driver;
+  s.platform = first.traits().platform;
+  s.kernel_options = first.traits().build_options;
   for (const auto& reason : explain(world, scene.integrator, features))
     if (reason.used) s.features.push_back(reason.feature);
   for (const auto& [name, seconds] : r.counts.program_seconds) s.programs.push_back({name, seconds, false});
-  uint64_t segments = 0, vertices = 0;
+  uint64_t segments = 0, vertices = 0, pool = 0, path_bytes = 0;
   for (const auto& f : world.fabrics) segments += f.report.segments, vertices += f.report.vertices;
-  const auto bytes = on_device.bytes();
+  for (size_t d = 0; d < devices.size(); ++d) {
+    const DeviceShare& share = r.devices[d];
+    const DeviceTraits& traits = devices[d].device->traits();
+    pool += share.pool, path_bytes += share.path_bytes;
+    s.devices.push_back({traits.name, traits.driver, devices[d].device->number(), share.counts.paths,
+                         share.counts.primary + share.counts.bounce + share.counts.shadow, share.moved_blocks,
+                         share.busy_seconds});
+  }
+  const auto bytes = on_first.bytes();
   s.geometry["ply segments"] = {segments, bytes.at("ply leaves") + bytes.at("ply tree") + bytes.at("lattices")};
   s.geometry["ply vertices"] = {vertices, bytes.at("ply vertices")};
   s.geometry["triangles"] = {world.triangle_count(), bytes.at("triangles")};
-  s.geometry["path state"] = {r.pool, r.path_bytes};
+  s.geometry["path state"] = {pool, path_bytes};
   s.stage_seconds = world.seconds;
-  s.stage_seconds["warp"] = on_device.fabric().warp_seconds;
-  s.stage_seconds["pack leaves"] = on_device.fabric().pack_seconds;
-  s.stage_seconds["build tree"] = on_device.fabric().build_seconds;
+  s.stage_seconds["warp"] = on_first.fabric().warp_seconds;
+  s.stage_seconds["pack leaves"] = on_first.fabric().pack_seconds;
+  s.stage_seconds["build tree"] = on_first.fabric().build_seconds;
   for (const auto& [name, stage] : r.counts.stages) s.stage_seconds[name] = stage.seconds;
+  s.rates = measure_rates(first);
+  s.stages = profile_stages(features, r.counts, s.rates);
+  s.ns_per_vertex = ns_per_vertex(r.counts);
   const auto seconds = [&](const char* stage) {
     const auto found = r.counts.stages.find(stage);
     return found == r.counts.stages.end() ? 0.0 : found->second.seconds;
   };
-  // Primary and bounce rays share the intersect stage; its time is split by their numbers.
-  const double path_rays = double(r.counts.primary + r.counts.bounce);
-  const double per_ray = path_rays > 0 ? seconds("intersect") / path_rays : 0;
-  s.rays["primary"] = {r.counts.primary, per_ray * double(r.counts.primary)};
-  s.rays["bounce"] = {r.counts.bounce, per_ray * double(r.counts.bounce)};
+  s.rays["primary"] = {r.counts.primary, r.counts.primary_seconds};
+  s.rays["bounce"] = {r.counts.bounce, r.counts.bounce_seconds()};
   s.rays["shadow"] = {r.counts.shadow, seconds("connect")};
   for (const RareEvent& e : kRareEvents) s.rare_events[e.name] = r.counts.events[e.counter];
   s.width = world.camera.width;
@@ -68,6 +135,7 @@ Stats stats_of(const Scene& scene, const Device& device, const World& world, con
 }  // namespace
 
 int run_render(const RenderArgs& args, const Loaders& loaders) {
+  Start start;
   Scene scene = read_scene(args.scene, args.set);
   if (!args.size.empty()) apply_size(args.size, scene.film);
   // Everything that can be refused is refused before the long work starts.
@@ -77,7 +145,17 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
     aovs |= output.extension() == ".exr";
   }
   if (!args.stats.empty()) require_writable_path(args.stats);
-  const Device device = Device::open(args.device);
+  start.step("read the scene");
+  // Programs are compiled while the scene is knitted.
+  Rehearsal rehearsal(args.device, [&](const DeviceTraits& traits) {
+    const Features features = foresee(scene, aovs, int(traits.lanes));
+    auto stages = geometry_stages(features);
+    for (auto& stage : wavefront_stages(features)) stages.push_back(std::move(stage));
+    return Rehearsal::Plan{stages, features.options(), args.kernel_dir};
+  });
+  Devices devices(args.device);
+  rehearsal.begin(devices.open());
+  start.step("open devices");
   catch_stop_signals();
 
   World world;
@@ -88,20 +166,26 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   }
   if (!args.quiet)
     for (const auto& note : world.notes) fmt::print(stderr, "note: {}\n", note);
-  const SceneDevice on_device(device, world, local_stage(scene.integrator));
+  start.step("knit");
   RenderOptions options;
   options.spp = args.spp > 0 ? args.spp : scene.integrator.spp;
   if (args.seconds > 0 && args.spp == 0) options.spp = 1 << 20;  // the clock decides
   options.seconds = args.seconds;
   options.aovs = aovs;
   options.kernel_dir = args.kernel_dir;
+  devices.upload(world, scene.integrator, options);
+  start.step("warp and tree");
   Progress bar("render", args.quiet);
-  const Rendered r = render(device, world, on_device, scene.integrator, options, [&](double f) { bar.update(f); });
+  const Rendered r = render(devices.list(), world, scene.integrator, options, [&](double f) { bar.update(f); });
   bar.finish(r.stopped ? "stopped early" : "");
+  start.step("programs", r.program_seconds);
+  start.step("first wave", r.first_sample_seconds);
 
   for (const auto& output : args.outputs) write_image(r.image, output, scene.film.exposure, scene.film.view);
-  const Features features = analyse(world, scene.integrator, aovs, int(device.traits().lanes));
-  const Stats stats = stats_of(scene, device, world, on_device, features, r);
+  const Features features = analyse(world, scene.integrator, aovs, int(devices.list().front().device->traits().lanes));
+  Stats stats = stats_of(scene, world, devices.list(), features, r);
+  stats.first_sample_seconds = start.seconds();
+  stats.start = start.steps();
   if (!args.stats.empty()) write_stats(stats, args.stats);
   const double rays = double(r.counts.primary + r.counts.bounce + r.counts.shadow);
   if (!args.quiet)

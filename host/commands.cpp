@@ -25,6 +25,14 @@ World world_of(const Scene& scene, const Loaders& loaders, bool quiet) {
   return world;
 }
 
+Device one_device(const SceneArgs& args) {
+  const auto numbers = device_numbers(args.device);
+  if (numbers.size() > 1)
+    user_error("--device {}: only a render uses several devices; give one number, for example --device {}", args.device,
+               numbers.front());
+  return Device::open(numbers.front());
+}
+
 void require_json_path(const std::filesystem::path& file) {
   if (!file.empty() && file != "-") require_writable_path(file);
 }
@@ -62,7 +70,7 @@ int run_build(const SceneArgs& args, const std::filesystem::path& json, const Lo
 int run_plan(const SceneArgs& args, const std::filesystem::path& json, const Loaders& loaders) {
   require_json_path(json);
   const Scene scene = read_scene(args.scene, args.set);
-  const Device device = Device::open(args.device);
+  const Device device = one_device(args);
   const World world = world_of(scene, loaders, args.quiet);
   const SceneDevice on_device(device, world, local_stage(scene.integrator));
   const Features features = analyse(world, scene.integrator, true, int(device.traits().lanes));
@@ -82,7 +90,7 @@ int run_export(const SceneArgs& args, const std::filesystem::path& output, const
           fabric.spec.name);
     fabric.spec.storage = Storage::stored;
   }
-  const Device device = Device::open(args.device);
+  const Device device = one_device(args);
   const World world = world_of(scene, loaders, args.quiet);
   const SceneDevice on_device(device, world, local_stage(scene.integrator));
   const std::vector<float> vertices = on_device.fabric().vertices.read(device);

@@ -11,7 +11,7 @@ namespace wale {
 struct SceneArgs {
   std::filesystem::path scene;
   std::vector<std::string> set;
-  unsigned device = 0;
+  std::string device = "0";  ///< as device_numbers() reads it
   std::filesystem::path kernel_dir;
   bool quiet = false;
 };

@@ -1,7 +1,9 @@
 #include "host/device.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdlib>
+#include <numeric>
 
 #include "geom/error.h"
 
@@ -43,16 +45,26 @@ DeviceTraits traits_of(const cl::Device& device) {
   // Explicit vectors pay on CPUs; GPUs run one ray per work-item in scalar code.
   const unsigned native = device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
   t.lanes = !t.cpu ? 1 : native >= 16 ? 16 : native >= 8 ? 8 : 1;
-  t.pool = t.cpu ? 1u << 16 : 1u << 21;
+  // One kernel variant of PoCL's for launches of a whole pool and for the shorter ones that follow.
+  t.pool = t.cpu ? Device::kLargeGrid - 512 : 1u << 21;
   t.local_size = std::min<size_t>(64, device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>());
   // Oclgrind's compiler shares one LLVM context between threads and crashes when two of them build; its interpreter
   // knows no intrinsic that inlining and optimising make (llvm.experimental.noalias.scope.decl, llvm.bitreverse).
+  t.compiles_at_launch = t.platform.find("Portable Computing Language") != std::string::npos;
   if (t.platform.find("Oclgrind") != std::string::npos) {
     t.parallel_builds = false;
     t.build_options = " -cl-opt-disable -DW_PORTABLE";
   }
   if (const char* more = std::getenv("WALE_KERNEL_OPTIONS")) t.build_options += std::string(" ") + more;
   return t;
+}
+
+std::vector<cl::Device> require_devices() {
+  auto devices = all_devices();
+  if (devices.empty())
+    device_error(
+        "OpenCL: no device found; install a CPU device with `apt-get install pocl-opencl-icd`, or your GPU's driver");
+  return devices;
 }
 
 }  // namespace
@@ -63,14 +75,32 @@ std::vector<DeviceTraits> Device::list() {
   return traits;
 }
 
+std::vector<unsigned> device_numbers(const std::string& text) {
+  std::vector<unsigned> numbers;
+  if (text == "all") {
+    numbers.resize(require_devices().size());
+    std::iota(numbers.begin(), numbers.end(), 0u);
+    return numbers;
+  }
+  for (const char* at = text.data(), *end = at + text.size();; ++at) {
+    unsigned number = 0;
+    const auto [next, error] = std::from_chars(at, end, number);
+    if (error != std::errc() || (next != end && *next != ','))
+      user_error("--device {}: expected a number, numbers with commas between them, for example 0,1, or all", text);
+    if (std::find(numbers.begin(), numbers.end(), number) != numbers.end())
+      user_error("--device {}: device {} is named twice", text, number);
+    numbers.push_back(number);
+    if (next == end) return numbers;
+    at = next;
+  }
+}
+
 Device Device::open(unsigned index) {
-  const auto devices = all_devices();
-  if (devices.empty())
-    device_error(
-        "OpenCL: no device found; install a CPU device with `apt-get install pocl-opencl-icd`, or your GPU's driver");
+  const auto devices = require_devices();
   if (index >= devices.size())
     user_error("--device {}: there is no such device; valid: 0 to {} (see `wale devices`)", index, devices.size() - 1);
   Device d;
+  d.number_ = index;
   d.device_ = devices[index];
   d.traits_ = traits_of(d.device_);
   d.context_ = cl::Context(d.device_);

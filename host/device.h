@@ -1,6 +1,7 @@
 #pragma once
 #include <CL/opencl.hpp>
 #include <cstdint>
+#include <future>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -19,7 +20,8 @@ struct DeviceTraits {
   unsigned lanes = 1;           ///< width of explicit vectors: 1, 8 or 16 (W_LANES)
   uint32_t pool = 1u << 16;     ///< paths in flight
   unsigned local_size = 64;     ///< work-group size of every kernel
-  bool parallel_builds = true;  ///< programs may be compiled on several threads at once
+  bool compiles_at_launch = false;  ///< machine code is made at a kernel's first launch, not by clBuildProgram
+  bool parallel_builds = true;      ///< programs may be compiled on several threads at once
   std::string build_options;    ///< what this driver's compiler needs, then WALE_KERNEL_OPTIONS of the environment
 };
 
@@ -27,7 +29,12 @@ struct DeviceTraits {
 struct ProgramCache {
   std::mutex mutex;
   std::map<std::string, cl::Program> programs;
+  std::map<std::string, std::shared_future<void>> ahead;  ///< what a Rehearsal compiles or has compiled
 };
+
+/// Numbers of the devices that `--device` names: "all", or numbers of Device::list() with commas between them. Throws a
+/// user error for anything else and for a device named twice.
+std::vector<unsigned> device_numbers(const std::string& text);
 
 /// An OpenCL device with its context and one in-order queue. Passed explicitly, never global.
 class Device {
@@ -42,14 +49,20 @@ class Device {
   const cl::Context& context() const { return context_; }
   const cl::CommandQueue& queue() const { return queue_; }
   const cl::Device& id() const { return device_; }
+  unsigned number() const { return number_; }  ///< of list()
   ProgramCache& programs() const { return *programs_; }
 
   /// Rounds a global size up to a multiple of the work-group size.
   cl::NDRange global(size_t items) const;
+  /// The same, at least kLargeGrid: PoCL compiles a kernel once for launches below that size and once for others. A
+  /// kernel that is launched in both ways, or nobody knows in which, is compiled once only like this.
+  cl::NDRange large_global(size_t items) const { return global(items < kLargeGrid ? kLargeGrid : items); }
+  static constexpr size_t kLargeGrid = 65536;
   cl::NDRange local() const { return cl::NDRange(traits_.local_size); }
 
  private:
   DeviceTraits traits_;
+  unsigned number_ = 0;
   cl::Device device_;
   cl::Context context_;
   cl::CommandQueue queue_;

@@ -85,8 +85,8 @@ Buffer<float> warp(const Device& device, const WarpInput& in, size_t more) {
   frames.setArg(5, flags.cl());
   frames.setArg(6, vertices.cl());
   frames.setArg(7, count);
-  device.queue().enqueueNDRangeKernel(points, cl::NullRange, device.global(count), device.local());
-  device.queue().enqueueNDRangeKernel(frames, cl::NullRange, device.global(count), device.local());
+  device.queue().enqueueNDRangeKernel(points, cl::NullRange, device.large_global(count), device.local());
+  device.queue().enqueueNDRangeKernel(frames, cl::NullRange, device.large_global(count), device.local());
   device.queue().finish();
   return vertices;
 }

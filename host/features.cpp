@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "host/ply_colors.h"
 #include "host/scene.h"
 #include "host/world.h"
 
@@ -47,6 +48,36 @@ Features analyse(const World& world, const IntegratorScene& integrator, bool aov
   f.paper_lobes = f.plies && integrator.ply_lobes == "paper";
   f.aovs = aovs;
   f.ply_colors = !world.ply_colors.empty();
+  f.local_stage = local_stage(integrator);
+  f.lanes = integrator.lanes ? integrator.lanes : device_lanes;
+  return f;
+}
+
+Features foresee(const Scene& scene, bool aovs, int device_lanes) {
+  Features f;
+  for (const auto& fabric : scene.fabrics) {
+    const bool fibres = fabric.spec.detail == Detail::fibres;
+    const PlyAppearance& yarn = scene.materials.at(size_t(fabric.material)).yarn;
+    f.plies |= !fibres;
+    f.fibres |= fibres || fabric.spec.flyaways.any();
+    f.detail |= fabric.spec.detail == Detail::maps || fabric.spec.detail == Detail::paper;
+    f.ply_colors |= colors_vary(yarn, fabric.color_image);
+  }
+  for (const auto& object : scene.objects) {
+    f.spheres |= object.kind == ObjectScene::Kind::sphere;
+    f.triangles |= object.kind != ObjectScene::Kind::sphere;
+  }
+  for (const auto& light : scene.lights) {
+    if (light.file.empty() && light.radiance == Rgb{0, 0, 0}) continue;
+    f.lights = true;
+    f.environment |= light.kind == LightScene::Kind::environment;
+    f.spheres |= light.kind == LightScene::Kind::sphere;
+    f.triangles |= light.kind == LightScene::Kind::quad || light.kind == LightScene::Kind::mesh;
+  }
+  const IntegratorScene& integrator = scene.integrator;
+  f.lights = f.lights && integrator.light_sampling != "bsdf";
+  f.paper_lobes = f.plies && integrator.ply_lobes == "paper";
+  f.aovs = aovs;
   f.local_stage = local_stage(integrator);
   f.lanes = integrator.lanes ? integrator.lanes : device_lanes;
   return f;

@@ -8,6 +8,7 @@
 namespace wale {
 
 struct World;
+struct Scene;
 struct IntegratorScene;
 
 /// What a scene asks for. Structure that is absent is neither compiled, launched nor stored; values are run-time data.
@@ -40,6 +41,9 @@ struct Reason {
 /// Stage that a scene's integrator.local_stage names.
 LocalStage local_stage(const IntegratorScene& integrator);
 Features analyse(const World& world, const IntegratorScene& integrator, bool aovs, int device_lanes);
+/// The same from the scene alone, before anything is knitted: what analyse() will say, unless a fabric turns out empty or
+/// a light's image black. For programs that are compiled ahead (host/rehearsal.h); nothing else may rest on it.
+Features foresee(const Scene& scene, bool aovs, int device_lanes);
 std::vector<Reason> explain(const World& world, const IntegratorScene& integrator, const Features& features);
 
 }  // namespace wale

@@ -6,9 +6,6 @@
 #include <cmath>
 
 namespace wale {
-namespace {
-constexpr int kScrambles = 8;
-}
 
 Image develop(const FilmSums& sums, const double origin[3]) {
   Image image;
@@ -28,7 +25,7 @@ Image develop(const FilmSums& sums, const double origin[3]) {
     std::array<double, 3> sum{};
     double count = 0;
     int groups = 0;
-    for (int g = 0; g < kScrambles; ++g) {
+    for (size_t g = 0; g < kScrambles; ++g) {
       const w_float4& s = sums.radiance[i * kScrambles + g];
       sum[0] += s.x, sum[1] += s.y, sum[2] += s.z;
       count += s.w;
@@ -41,7 +38,7 @@ Image develop(const FilmSums& sums, const double origin[3]) {
     if (groups > 1)
       for (int c = 0; c < 3; ++c) {
         double spread = 0;
-        for (int g = 0; g < kScrambles; ++g) {
+        for (size_t g = 0; g < kScrambles; ++g) {
           const w_float4& s = sums.radiance[i * kScrambles + g];
           if (s.w == 0) continue;
           const double mean = (c == 0 ? s.x : c == 1 ? s.y : s.z) / s.w, w = s.w / count;

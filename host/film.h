@@ -6,6 +6,9 @@
 
 namespace wale {
 
+/// Independent scrambles of the samples (W_SCRAMBLES of sampling/sobol.clh), summed apart.
+constexpr size_t kScrambles = 8;
+
 /// What the wavefront gathered, as sums.
 struct FilmSums {
   int width = 0, height = 0;

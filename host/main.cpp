@@ -4,10 +4,12 @@
 #include <cstdio>
 #include <exception>
 
+#include "bench/wale_bench/options.h"
 #include "geom/base_mesh.h"
 #include "geom/error.h"
 #include "host/commands.h"
 #include "host/device.h"
+#include "host/device_fault.h"
 #include "host/suggest.h"
 
 namespace {
@@ -31,7 +33,7 @@ void add_scene_options(CLI::App& command, SceneArgs& args) {
   command.add_option("SCENE", args.scene, "scene file")->required();
   command.add_option("--set", args.set, "change a key of the scene: key.path=value (repeatable)")
       ->allow_extra_args(false);
-  command.add_option("--device", args.device, "number of the OpenCL device, see `wale devices`");
+  command.add_option("--device", args.device, "OpenCL device (see `wale devices`): its number; for a render also several, 0,2, or all");
   command.add_option("--kernel-dir", args.kernel_dir, "read kernels from this folder instead of the built-in ones");
   command.add_flag("--quiet", args.quiet, "no progress");
 }
@@ -93,6 +95,10 @@ int run(int argc, char** argv) {
   c->add_option("B", image_b, "reference image")->required();
   c->add_option("--max-rmse", max_rmse, "fail when the RMSE is larger")->check(finite_number(true));
   c->callback([&] { status = wale::run_compare(image_a, image_b, max_rmse); });
+  wale::bench::BenchArgs bench;
+  c = app.add_subcommand("bench", "throughput of this device, stage by stage; without options, the score");
+  wale::bench::add_bench_options(*c, bench);
+  c->callback([&] { status = wale::bench::run_bench(bench, loaders); });
   c = app.add_subcommand("devices", "list the OpenCL devices");
   c->callback([&] { status = wale::run_devices(); });
   c = app.add_subcommand("schema", "print the JSON Schema of scene files");
@@ -118,7 +124,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "wale: %s\n", e.what());
     return static_cast<int>(e.fault());
   } catch (const cl::Error& e) {
-    std::fprintf(stderr, "wale: OpenCL: %s failed with error %d\n", e.what(), e.err());
+    std::fprintf(stderr, "wale: %s\n", wale::opencl_fault(e).c_str());
     return 2;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "wale: out of memory; use fewer repeats or a smaller film\n");

@@ -84,7 +84,7 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
     pack.setArg(2, tree.leaves.cl());
     pack.setArg(3, box_buffer.cl());
     pack.setArg(4, uint32_t(patches.size()));
-    device.queue().enqueueNDRangeKernel(pack, cl::NullRange, device.global(patches.size()), device.local());
+    device.queue().enqueueNDRangeKernel(pack, cl::NullRange, device.large_global(patches.size()), device.local());
     const std::vector<float> flat = box_buffer.read(device);
     for (size_t i = 0; i < patches.size(); ++i) {
       std::copy_n(flat.begin() + 6 * i, 3, boxes[i].lo);

@@ -6,6 +6,9 @@
 #include <sstream>
 
 #include "geom/error.h"
+#include "host/build_log.h"
+#include "host/device_fault.h"
+#include "host/driver_crash.h"
 #include "host/kernel_sources.h"
 
 namespace wale {
@@ -48,25 +51,22 @@ void expand(const std::string& text, const std::string& file, const std::filesys
   }
 }
 
-cl::Program compile(const Device& device, const std::string& source, const std::string& file, std::string options) {
-  options += " -cl-std=CL1.2" + device.traits().build_options;
-  if (options.find("W_LANES") == std::string::npos) options += fmt::format(" -DW_LANES={}", device.traits().lanes);
-  const std::string key = options + '\n' + source;
+ProgramText with_options(const DeviceTraits& traits, const std::string& file, std::string source, std::string options) {
+  options += " -cl-std=CL1.2" + traits.build_options;
+  if (traits.compiles_at_launch) options += " -cl-kernel-arg-info";  // a Rehearsal asks for it
+  if (options.find("W_LANES") == std::string::npos) options += fmt::format(" -DW_LANES={}", traits.lanes);
+  return {file, std::move(source), std::move(options)};
+}
+
+cl::Program compile(const Device& device, const ProgramText& text) {
+  std::shared_future<void> ahead;
   {
     const std::lock_guard lock(device.programs().mutex);
-    const auto found = device.programs().programs.find(key);
-    if (found != device.programs().programs.end()) return found->second;
+    const auto found = device.programs().ahead.find(text.key());
+    if (found != device.programs().ahead.end()) ahead = found->second;
   }
-  cl::Program program(device.context(), source);
-  try {
-    program.build({device.id()}, options.c_str());
-  } catch (const cl::Error&) {
-    device_error("kernels/{}: does not compile for {} with{}{}\n{}", file, device.traits().name, options,
-                 std::getenv("WALE_KERNEL_OPTIONS") ? " (the environment's WALE_KERNEL_OPTIONS among them)" : "",
-                 program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.id()));
-  }
-  const std::lock_guard lock(device.programs().mutex);
-  return device.programs().programs.emplace(key, program).first->second;
+  if (ahead.valid()) ahead.wait();
+  return build_now(device, text);
 }
 
 }  // namespace
@@ -78,16 +78,45 @@ std::string expand_kernel_source(const std::string& file, const std::filesystem:
   return out;
 }
 
+ProgramText program_text(const DeviceTraits& traits, const std::string& file, const std::string& options,
+                         const std::filesystem::path& kernel_dir) {
+  return with_options(traits, file, expand_kernel_source(file, kernel_dir), options);
+}
+
+cl::Program build_now(const Device& device, const ProgramText& text) {
+  const std::string key = text.key();
+  {
+    const std::lock_guard lock(device.programs().mutex);
+    const auto found = device.programs().programs.find(key);
+    if (found != device.programs().programs.end()) return found->second;
+  }
+  const DriverCall guard;
+  cl::Program program(device.context(), text.source);
+  try {
+    program.build({device.id()}, text.options.c_str());
+  } catch (const cl::Error& e) {
+    const std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.id());
+    const std::string& name = device.traits().name;
+    const std::string file = keep_build_log(text.file + " " + name, log + "\noptions: " + text.options + "\n");
+    device_error("kernels/{}: does not compile for {}{}: {}; {}{}", text.file, name,
+                 std::getenv("WALE_KERNEL_OPTIONS") ? " with the environment's WALE_KERNEL_OPTIONS" : "",
+                 one_line(log.empty() ? opencl_fault(e) : first_error(log)),
+                 file.empty() ? "the log could not be kept" : "the whole log is in ", file);
+  }
+  const std::lock_guard lock(device.programs().mutex);
+  return device.programs().programs.emplace(key, program).first->second;
+}
+
 cl::Program build_program(const Device& device, const std::string& file, const std::string& options,
                           const std::filesystem::path& kernel_dir) {
-  return compile(device, expand_kernel_source(file, kernel_dir), file, options);
+  return compile(device, program_text(device.traits(), file, options, kernel_dir));
 }
 
 cl::Program build_program_text(const Device& device, const std::string& text, const std::string& options) {
   std::set<std::string> done;
   std::string out;
   expand(text, "test.cl", {}, done, out);
-  return compile(device, out, "test.cl", options);
+  return compile(device, with_options(device.traits(), "test.cl", out, options));
 }
 
 }  // namespace wale

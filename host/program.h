@@ -10,7 +10,19 @@ namespace wale {
 /// Files come from `kernel_dir` when it is not empty, else from those built into the program.
 std::string expand_kernel_source(const std::string& file, const std::filesystem::path& kernel_dir = {});
 
-/// Compiles one kernel file (path below kernels/) for a device. Throws a device error with the build log.
+/// What a driver is given: the whole source and the options.
+struct ProgramText {
+  std::string file, source, options;
+  std::string key() const { return options + '\n' + source; }
+};
+ProgramText program_text(const DeviceTraits& traits, const std::string& file, const std::string& options = "",
+                         const std::filesystem::path& kernel_dir = {});
+
+/// Compiles a program, or takes it from the device's cache. Throws a device error of one line that names the kernel file
+/// and the file in which the compiler's log is kept. Does not wait for a Rehearsal.
+cl::Program build_now(const Device& device, const ProgramText& text);
+
+/// Compiles one kernel file (path below kernels/) for a device. Throws as build_now().
 /// `options` are -D definitions and the like; W_LANES is added from the device's traits unless given.
 cl::Program build_program(const Device& device, const std::string& file, const std::string& options = "",
                           const std::filesystem::path& kernel_dir = {});

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <span>
 
 #include "host/film.h"
 #include "host/stats.h"
@@ -13,21 +14,47 @@ struct RenderOptions {
   double seconds = 0;  ///< > 0: stop after this time, whatever spp says
   uint32_t pool = 0;   ///< paths in flight; 0 = from the device
   bool aovs = false;
+  bool count_cpu_time = false;  ///< stages by CPU time: see Wavefront::count_cpu_time
+  RayRecord* record = nullptr;  ///< keeps the rays that are sent
   std::filesystem::path kernel_dir;
+};
+
+/// Paths in flight on a device: what the options say, else the scene, else the device's table of traits.
+uint32_t pool_of(const DeviceTraits& traits, const IntegratorScene& integrator, const RenderOptions& options);
+
+/// A device and the scene on it.
+struct RenderDevice {
+  const Device* device = nullptr;
+  const SceneDevice* scene = nullptr;
+};
+
+/// What one device did of a render.
+struct DeviceShare {
+  WaveCounts counts;
+  double busy_seconds = 0;       ///< from taking a unit of work to its end, all units
+  uint32_t units = 0, pool = 0;  ///< units of work; paths in flight
+  uint64_t path_bytes = 0;       ///< path state and film
+  uint64_t moved_blocks = 0;     ///< blocks of pixels whose sums it took over from another device
 };
 
 struct Rendered {
   Image image;
-  WaveCounts counts;
-  double seconds = 0;
-  int samples = 0;       ///< per pixel, of the pixels that have most
-  bool stopped = false;  ///< by Ctrl-C or the time limit
-  uint32_t pool = 0;     ///< paths in flight
-  uint64_t path_bytes = 0;
+  WaveCounts counts;  ///< of all devices
+  std::vector<DeviceShare> devices;
+  double seconds = 0;               ///< from the first wave on
+  double first_sample_seconds = 0;  ///< of them, until the first device's first wave was done
+  double program_seconds = 0;       ///< wall time until all programs were built
+  int samples = 0;                  ///< per pixel, of the pixels that have most
+  bool stopped = false;             ///< by Ctrl-C or the time limit
 };
 
-/// Renders a world on a device. The picture depends on the scene, spp and seed alone: not on pool, threads or device
-/// count. Ctrl-C and the time limit stop between waves and keep what is there.
+/// Renders a world on devices that share its samples, each at its own pace. The picture depends on the scene, spp and
+/// seed alone: not on pool, threads or the number of (like) devices. Ctrl-C and the time limit stop between waves and
+/// keep what is there. When one device fails, all stop and its error is thrown, naming it.
+Rendered render(std::span<const RenderDevice> devices, const World& world, const IntegratorScene& integrator,
+                const RenderOptions& options, const std::function<void(double fraction)>& progress = {});
+
+/// The same on one device.
 Rendered render(const Device& device, const World& world, const SceneDevice& scene, const IntegratorScene& integrator,
                 const RenderOptions& options, const std::function<void(double fraction)>& progress = {});
 

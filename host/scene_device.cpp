@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "geom/error.h"
+#include "host/driver_crash.h"
 #include "host/triangle_tree.h"
+#include "shared/visits.h"
 
 namespace wale {
 namespace {
@@ -36,6 +38,11 @@ std::vector<FabricInput> inputs_of(const World& world) {
   return inputs;
 }
 
+FabricDevice upload(const Device& device, const World& world, LocalStage stage) {
+  const DriverCall guard;
+  return upload_fabrics(device, inputs_of(world), world.origin, stage);
+}
+
 }  // namespace
 
 SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage stage)
@@ -43,7 +50,7 @@ SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage st
       stage_(stage),
       procedural_(
           std::any_of(world.fabrics.begin(), world.fabrics.end(), [](const Fabric& f) { return f.procedural; })),
-      fabric_(upload_fabrics(device, inputs_of(world), world.origin, stage)) {
+      fabric_(upload(device, world, stage)) {
   const TriangleTree tree = build_triangle_tree(corners_of(world.triangles));
   ply_materials_ = Buffer<WPlyMaterial>(device, world.ply_materials);
   fibre_details_ = Buffer<WFibreDetail>(device, world.fibres.details);
@@ -71,7 +78,7 @@ SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage st
   environment_ = world.environment;
   env_texels_ = Buffer<w_float4>(device, world.environment_tables.texels);
   env_cdf_ = Buffer<float>(device, world.environment_tables.cdf);
-  events_ = Buffer<uint32_t>(device, W_EVENT_COUNT);
+  events_ = Buffer<uint32_t>(device, W_COUNTER_COUNT);
   events_.fill(device, 0u);
 }
 

@@ -28,6 +28,7 @@ class SceneDevice {
   const cl::Buffer& spheres() const { return spheres_.cl(); }
   const cl::Buffer& surface_materials() const { return surface_materials_.cl(); }
   const cl::Buffer& events() const { return events_.cl(); }
+  /// Rare events, and the visits of programs that count them (kernels/shared/visits.h).
   std::vector<uint32_t> read_events() const { return events_.read(device_); }
 
   const FabricDevice& fabric() const { return fabric_; }

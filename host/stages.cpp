@@ -1,30 +1,97 @@
 #include "host/stages.h"
 
+#include "shared/wale_types.h"
+
 namespace wale {
+namespace {
+
+// Bytes of a stage's buffers per item, for its floor (host/stage_profile.h). What every item shares and caches hold
+// (materials, lights, counts) is not counted, nor is the tree: bytes of a traversal depend on the ray and are counted
+// by `wale bench`.
+//
+//   stage          an item is         reads                                       writes
+//   generate       a path of a wave   -                                           list, mask, ray 3, weight, radiance
+//   intersect      a ray              list, ray 3                                 hit, barycentrics, mask
+//   compact        a slot of a list   twice list and mask                         list
+//   miss           a path that left   list, ray direction, weight, radiance       mask, radiance
+//   shade_ply      a hit              list, ray 3, hit, barycentrics, weight,     mask, ray 3, weight, shadow ray 3
+//                                     leaf header, 4 points, 2 vertices           and colour
+//   shade_fibre    a hit              the same                                    the same
+//   shade_surface  a hit              list, ray 3, hit, barycentrics, weight,     mask, ray 3, weight, radiance,
+//                                     radiance, triangle                          shadow ray 3 and colour
+//   connect        a shadow ray       list, shadow ray 3 and colour, radiance     radiance
+//   accumulate     a path             radiance, pixel sum                         pixel sum
+//   accumulate_aov a path             4 features, 4 pixel sums                    4 pixel sums
+constexpr double kWord = 4, kVec = 16, kRay = 3 * kVec, kUv = 8;
+constexpr double kShadowRay = kRay + kVec;
+constexpr double kLeafPart = W_LEAF_HEADER * kWord + 4 * 3 * kWord + 2 * W_VERTEX_WORDS * kWord;
+constexpr double kTriangle = 20 * kWord;
+
+// Additions and multiplications of one hit with one light sample, as `oclgrind --inst-counts` counts them (a dot
+// product as five, a fused multiply-add as two), and 20 for each of its 39 exponentials, logarithms and angles.
+constexpr double kShadePlyOperations = 1000 + 39 * 20;
+
+}  // namespace
+
+std::vector<Stage> geometry_stages(const Features& f) {
+  const bool curves = f.plies || f.fibres;
+  return {{.file = "warp.cl",
+           .kernels = {"warp_points", "warp_normals"},
+           .used = curves,
+           .because = "plies on the base mesh",
+           .before_rays = true},
+          {.file = "pack.cl",
+           .kernels = {"pack_leaves"},
+           .used = curves,
+           .because = "leaves and bounds",
+           .before_rays = true}};
+}
 
 std::vector<Stage> wavefront_stages(const Features& f) {
   const bool surfaces = f.triangles || f.spheres;
+  const double shadow = f.lights ? kShadowRay : 0, features = f.aovs ? 4 * kVec : 0;
+  const double shade = kWord + 2 * kRay + 2 * kVec + kVec + kUv + kWord + shadow;
   return {
-      {"stages/generate.cl", {"generate"}, true, "camera rays"},
-      {"stages/intersect.cl", {"intersect"}, true, "nearest hits"},
+      {"stages/generate.cl", {"generate"}, true, "camera rays", 2 * kWord + kRay + 2 * kVec},
+      {"stages/intersect.cl", {"intersect"}, true, "nearest hits", kWord + kRay + kVec + kUv + kWord},
       {"stages/intersect_packets.cl",
        {"intersect_packets"},
        f.packets(),
-       f.packets() ? "nearest hits of camera rays, many at once" : "vectors or local stage do not suit packets"},
-      {"stages/compact.cl", {"compact_count", "compact_scan", "compact_scatter"}, true, "queues"},
+       f.packets() ? "nearest hits of camera rays, many at once" : "vectors or local stage do not suit packets",
+       kWord + kRay + kVec + kUv + kWord},
+      {"stages/compact.cl", {"compact_count", "compact_scan", "compact_scatter"}, true, "queues", 5 * kWord},
       {"stages/miss.cl",
        {"miss"},
        true,
-       f.environment ? "paths that leave gather the environment" : "paths that leave end"},
-      {"stages/shade_ply.cl", {"shade_ply"}, f.plies, f.plies ? "plies" : "no ply is shown"},
-      {"stages/shade_fibre.cl", {"shade_fibre"}, f.fibres, f.fibres ? "single fibres" : "no fibre is explicit"},
+       f.environment ? "paths that leave gather the environment" : "paths that leave end",
+       2 * kWord + (f.environment ? 4 * kVec : 0)},
+      {"stages/shade_ply.cl",
+       {"shade_ply"},
+       f.plies,
+       f.plies ? "plies" : "no ply is shown",
+       shade + kLeafPart,
+       kShadePlyOperations},
+      {"stages/shade_fibre.cl",
+       {"shade_fibre"},
+       f.fibres,
+       f.fibres ? "single fibres" : "no fibre is explicit",
+       shade + kLeafPart},
       {"stages/shade_surface.cl",
        {"shade_surface"},
        surfaces,
-       surfaces ? "props, ground or visible lights" : "no props"},
-      {"stages/connect.cl", {"connect"}, f.lights, f.lights ? "shadow rays" : "nothing is sampled"},
-      {"stages/accumulate.cl", {"accumulate"}, true, "pixel sums"},
-      {"stages/accumulate_aov.cl", {"accumulate_aov"}, f.aovs, f.aovs ? "feature images" : "no .exr is written"},
+       surfaces ? "props, ground or visible lights" : "no props",
+       shade + 2 * kVec + kTriangle},
+      {"stages/connect.cl",
+       {"connect"},
+       f.lights,
+       f.lights ? "shadow rays" : "nothing is sampled",
+       kWord + kShadowRay + 2 * kVec},
+      {"stages/accumulate.cl", {"accumulate"}, true, "pixel sums", 3 * kVec},
+      {"stages/accumulate_aov.cl",
+       {"accumulate_aov"},
+       f.aovs,
+       f.aovs ? "feature images" : "no .exr is written",
+       3 * features},
   };
 }
 

@@ -12,7 +12,13 @@ struct Stage {
   std::vector<std::string> kernels;
   bool used = true;
   std::string because;
+  double bytes_per_item = 0;  ///< of path state, lists and stored geometry that an item reads and writes
+  double operations_per_item = 0;  ///< of floats; 0: not counted
+  bool before_rays = false;  ///< runs once, on the scene's geometry; has no variants
 };
+
+/// What makes the scene's plies ready to be traced.
+std::vector<Stage> geometry_stages(const Features& features);
 
 /// All stages in the order of a bounce; those that are not used are neither compiled nor launched.
 std::vector<Stage> wavefront_stages(const Features& features);

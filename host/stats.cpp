@@ -19,6 +19,16 @@ std::string Stats::json() const {
   ordered_json out;
   out["scene"] = scene;
   out["device"] = {{"name", device}, {"driver", driver}, {"platform", platform}, {"kernel_options", kernel_options}};
+  out["devices"] = ordered_json::array();
+  for (const auto& d : devices)
+    out["devices"].push_back({{"number", d.number},
+                              {"name", d.name},
+                              {"driver", d.driver},
+                              {"samples", d.samples},
+                              {"share", samples ? double(d.samples) / double(samples) : 0},
+                              {"rays", d.rays},
+                              {"busy_seconds", d.busy_seconds},
+                              {"blocks_taken_over", d.moved_blocks}});
   out["features"] = features;
   out["programs"] = ordered_json::array();
   for (const auto& p : programs)
@@ -26,6 +36,10 @@ std::string Stats::json() const {
   out["geometry"] = ordered_json::object();
   for (const auto& [name, g] : geometry) out["geometry"][name] = {{"count", g.count}, {"bytes", g.bytes}};
   out["stage_seconds"] = ordered_json(stage_seconds);
+  out["stages"] = profile_json(stages);
+  out["ns_per_path_vertex"] = ns_per_vertex;
+  out["device_rates"] = {{"bytes_per_second", rates.bytes_per_second},
+                         {"operations_per_second", rates.operations_per_second}};
   out["rays"] = ordered_json::object();
   Rays all;
   const auto rays_json = [](const Rays& r) {
@@ -43,6 +57,9 @@ std::string Stats::json() const {
   out["samples"] = samples;
   out["rare_events"] = ordered_json(rare_events);
   out["total_seconds"] = total_seconds;
+  out["first_sample_seconds"] = first_sample_seconds;
+  out["start"] = ordered_json::object();
+  for (const auto& [step, seconds] : start) out["start"][step] = seconds;
   out["peak_memory_bytes"] = peak_memory_bytes();
   // A driver may hand back a name that is not UTF-8; it must not cost the statistics.
   return out.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";

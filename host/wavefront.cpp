@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <future>
 
 #include "geom/error.h"
@@ -12,11 +13,7 @@ namespace wale {
 namespace {
 
 constexpr uint32_t kChunk = 256;       // W_CHUNK of compact.cl
-constexpr uint32_t kTile = 8;          // W_TILE of path_state.clh
 constexpr uint32_t kDepthCap = 65536;  // no path is this long; reaching it is counted as an event
-
-// Places of the queue lengths in queue_counts_.
-constexpr uint32_t kGenerated = 0, kHits = 1, kShaded[2] = {5, 9}, kQueueCounts = 13;
 
 template <typename... Args>
 void set_args(cl::Kernel& kernel, cl_uint first, const Args&... args) {
@@ -34,7 +31,8 @@ cl_float2 pixel_width(const WCamera& camera) {
 
 Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Features& features, const WCamera& camera,
                      uint32_t pool, const std::filesystem::path& kernel_dir)
-    : device_(device), scene_(scene), features_(features), camera_(camera), pool_(std::max(64u, pool)) {
+    : device_(device), scene_(scene), features_(features), camera_(camera), pool_(std::max(64u, pool)),
+      film_(device, camera.width, camera.height, features.aovs) {
   const auto vec = [&](Buffer<w_float4>& buffer, size_t count) {
     buffer = Buffer<w_float4>(device_, count);
     bytes_ += buffer.bytes();
@@ -43,11 +41,6 @@ Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Featu
     buffer = Buffer<uint32_t>(device_, count);
     bytes_ += buffer.bytes();
   };
-  const size_t pixels = size_t(camera.width) * camera.height;
-  const uint64_t film_bytes = pixels * kScrambles * sizeof(w_float4);
-  if (film_bytes > device.traits().max_alloc_bytes)
-    user_error("film.size: {} x {} pixels need {} bytes in one buffer, the device allows {}", camera.width,
-               camera.height, film_bytes, device.traits().max_alloc_bytes);
   for (auto* b :
        {&ray_o_, &ray_l_, &ray_d_, &weight_, &hit_, &radiance_, &shadow_o_, &shadow_l_, &shadow_d_, &shadow_c_})
     vec(*b, pool_);
@@ -59,13 +52,7 @@ Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Featu
   ints(fibre_list_, features_.fibres ? pool_ : 0);
   ints(chunk_, (pool_ / kChunk + 1) * bins());
   ints(queue_counts_, kQueueCounts);
-  vec(film_, pixels * kScrambles);
-  film_.fill(device_, w_float4{0, 0, 0, 0});
   vec(aov_, features_.aovs ? size_t(pool_) * 4 : 0);
-  vec(aov_film_, features_.aovs ? pixels * 4 : 0);
-  ints(ply_film_, features_.aovs ? pixels : 0);
-  aov_film_.fill(device_, w_float4{0, 0, 0, 0});
-  ply_film_.fill(device_, W_NONE);
   build_programs(kernel_dir);
 }
 
@@ -135,26 +122,35 @@ void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
     next = scene_.bind_scene(k, path(k, 1));
     set_args(k, next, shadow_list_.cl(), queue_counts_.cl());
   }
-  auto& accumulate = kernel("accumulate");
-  set_args(accumulate, 1, camera_);
-  set_args(accumulate, 3, radiance_.cl(), film_.cl(), scene_.events());
-  if (features_.aovs) {
-    auto& k = kernel("accumulate_aov");
-    set_args(k, 1, camera_);
-    set_args(k, 3, aov_.cl(), aov_film_.cl(), ply_film_.cl());
-  }
+  kernel("accumulate").setArg(1, camera_);
+  if (features_.aovs) kernel("accumulate_aov").setArg(1, camera_);
 }
 
-uint32_t Wavefront::padded_pixels() const {
-  const auto tiles = [](int n) { return (uint32_t(n) + kTile - 1) / kTile; };
-  return tiles(camera_.width) * tiles(camera_.height) * kTile * kTile;
-}
-
-void Wavefront::launch(const std::string& name, size_t items) {
+void Wavefront::launch(const std::string& name, size_t items, bool camera_rays) {
   cl::Event event;
+  const std::clock_t start = std::clock();
   device_.queue().enqueueNDRangeKernel(kernel(name), cl::NullRange, device_.global(items), device_.local(), nullptr,
                                        &event);
-  pending_.emplace_back(name, event);
+  if (count_cpu_time_) device_.queue().finish();
+  pending_.push_back({name, event, camera_rays, double(std::clock() - start) / CLOCKS_PER_SEC});
+}
+
+void Wavefront::launch_intersect(const Buffer<uint32_t>& list, uint32_t count_index, uint32_t depth, size_t bound) {
+  auto& k = kernel(nearest(depth));
+  set_args(k, k.getInfo<CL_KERNEL_NUM_ARGS>() - 4, list.cl(), queue_counts_.cl(), count_index, depth);
+  launch(nearest(depth), in_packets(depth) ? bound / size_t(features_.lanes) + 1 : bound, depth == 0);
+}
+
+void Wavefront::launch_connect(uint32_t count_index, uint32_t depth, size_t bound) {
+  auto& k = kernel("connect");
+  set_args(k, k.getInfo<CL_KERNEL_NUM_ARGS>() - 2, count_index, depth);
+  launch("connect", bound);
+}
+
+void Wavefront::set_frame(const WFrame& frame) {
+  for (const char* name : {"generate", "intersect", "intersect_packets", "miss", "shade_ply", "shade_fibre", "shade_surface", "connect",
+                           "accumulate", "accumulate_aov"})
+    if (const auto found = kernels_.find(name); found != kernels_.end()) found->second.setArg(0, frame);
 }
 
 void Wavefront::compact(const Buffer<uint32_t>& list, uint32_t count_index, uint32_t total_index, size_t bound,
@@ -175,9 +171,9 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
   frame.samples_before = first_sample;
   frame.samples_in_wave = samples;
   frame.paths = pixels * samples;
-  for (const char* name : {"generate", "intersect", "intersect_packets", "miss", "shade_ply", "shade_fibre", "shade_surface", "connect",
-                           "accumulate", "accumulate_aov"})
-    if (const auto found = kernels_.find(name); found != kernels_.end()) found->second.setArg(0, frame);
+  set_frame(frame);
+  const bool recording = record_ && waves_ % record_->every == 0;
+  ++waves_;
 
   launch("generate", frame.paths);
   size_t bound = frame.paths;  // launches cover at least the live paths; lengths only ever shrink
@@ -191,11 +187,8 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
       break;
     }
     const auto& live = active_[side];
-    const bool packets = depth == 0 && features_.packets();
-    const std::string nearest = packets ? "intersect_packets" : "intersect";
-    const uint32_t args = kernel(nearest).getInfo<CL_KERNEL_NUM_ARGS>();
-    set_args(kernel(nearest), args - 4, live.cl(), queue_counts_.cl(), count_index, depth);
-    launch(nearest, packets ? bound / size_t(features_.lanes) + 1 : bound);
+    launch_intersect(live, count_index, depth, bound);
+    if (recording) keep_rays(frame, depth ? RayKind::bounce : RayKind::primary, live, count_index, depth);
     compact(live, count_index, kHits, bound, ply_list_, surface_list_, miss_list_);
     launch("miss", bound);
     for (const char* name : {"shade_ply", "shade_fibre", "shade_surface"})
@@ -206,10 +199,8 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
     const uint32_t shaded = kShaded[side];
     compact(live, count_index, shaded, bound, active_[1 - side], shadow_list_, spare_list_);
     if (features_.lights) {
-      auto& connect = kernel("connect");
-      const uint32_t n = connect.getInfo<CL_KERNEL_NUM_ARGS>();
-      set_args(connect, n - 2, shaded + 1, depth);
-      launch("connect", bound);
+      if (recording) keep_rays(frame, RayKind::shadow, shadow_list_, shaded + 1, depth);
+      launch_connect(shaded + 1, depth, bound);
     }
     device_.queue().enqueueReadBuffer(queue_counts_.cl(), CL_FALSE, 0, sizeof(lengths[0]), lengths[depth % 2].data(),
                                       nullptr, &read[depth % 2]);
@@ -220,13 +211,16 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
       read[(depth - 1) % 2].wait();
       const auto& before = lengths[(depth - 1) % 2];
       const uint32_t was = kShaded[1 - side];
-      if (depth == 1) {  // pixels are padded to whole tiles: only those of the picture have paths
-        counts_.primary += before[kShaded[1]];
-        counts_.paths += before[kShaded[1]];
+      // Pixels are padded to whole tiles: only those of the picture have paths.
+      const uint32_t were_live = depth == 1 ? before[kShaded[1]] : uint32_t(bound);
+      if (depth == 1) {
+        counts_.primary += were_live;
+        counts_.paths += were_live;
       }
       bound = before[was];
       counts_.bounce += before[was];
       counts_.shadow += before[was + 1];
+      counts_.add_bounce(nearest(depth - 1), were_live, before.data() + kHits, before[was + 1]);
       counts_.deepest = std::max(counts_.deepest, depth);
       if (bound == 0) {
         read[depth % 2].wait();
@@ -235,38 +229,34 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
     }
     side = 1 - side;
   }
-  set_args(kernel("accumulate"), 2, pixels);
-  launch("accumulate", pixels);
-  if (features_.aovs) {
-    set_args(kernel("accumulate_aov"), 2, pixels);
-    launch("accumulate_aov", pixels);
+  for (const auto& p : film_.pieces(first_pixel, pixels)) {
+    set_args(kernel("accumulate"), 2, p.in_run, p.in_band, p.count, radiance_.cl(), film_.radiance(p.band),
+             scene_.events());
+    launch("accumulate", p.count);
+    if (!features_.aovs) continue;
+    set_args(kernel("accumulate_aov"), 2, p.in_run, p.in_band, p.count, aov_.cl(), film_.aov(p.band),
+             film_.ply(p.band));
+    launch("accumulate_aov", p.count);
   }
   device_.queue().finish();
+  counts_.add_wave(frame.paths);
   harvest_events();
 }
 
 void Wavefront::harvest_events() {
-  for (const auto& [name, event] : pending_) {
-    auto& stage = counts_.stages[name];
-    stage.seconds += 1e-9 * double(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
-                                   event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
-    ++stage.launches;
-  }
+  for (const Launch& launch : pending_)
+    counts_.add_launch(
+        launch.kernel,
+        count_cpu_time_ ? launch.cpu_seconds / device_.traits().compute_units : device_seconds(launch.event),
+        launch.camera_rays);
   pending_.clear();
-}
-
-std::vector<w_float4> Wavefront::read_aov() const {
-  return features_.aovs ? aov_film_.read(device_) : std::vector<w_float4>{};
-}
-
-std::vector<uint32_t> Wavefront::read_ply() const {
-  return features_.aovs ? ply_film_.read(device_) : std::vector<uint32_t>{};
 }
 
 WaveCounts Wavefront::counts() const {
   WaveCounts counts = counts_;
+  std::erase_if(counts.stages, [](const auto& stage) { return stage.second.launches == 0; });
   const auto events = scene_.read_events();
-  for (size_t i = 0; i < events.size(); ++i) counts.events[i] += events[i];
+  for (size_t i = 0; i < counts.events.size(); ++i) counts.events[i] += events[i];
   return counts;
 }
 

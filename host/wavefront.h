@@ -8,24 +8,12 @@
 
 #include "host/device.h"
 #include "host/features.h"
+#include "host/film_device.h"
+#include "host/ray_batch.h"
 #include "host/scene_device.h"
+#include "host/wave_counts.h"
 
 namespace wale {
-
-/// Seconds and launches of one stage, from the device's own clock.
-struct StageTime {
-  double seconds = 0;
-  size_t launches = 0;
-};
-
-/// What the wavefront counted.
-struct WaveCounts {
-  uint64_t primary = 0, bounce = 0, shadow = 0, paths = 0;
-  uint32_t deepest = 0;
-  std::array<uint32_t, W_EVENT_COUNT> events{};
-  std::map<std::string, StageTime> stages;
-  std::map<std::string, double> program_seconds;
-};
 
 /// Film and path state on the device, and the kernels of one set of features. One wave traces a block of pixels times a
 /// run of samples to the end of every path: generate, then per bounce intersect, compact, miss, shade, compact,
@@ -36,27 +24,43 @@ class Wavefront {
   Wavefront(const Device& device, const SceneDevice& scene, const Features& features, const WCamera& camera,
             uint32_t pool, const std::filesystem::path& kernel_dir = {});
 
-  /// Pixel numbers run along 8 x 8 tiles: this many, of which those outside the picture are skipped.
-  uint32_t padded_pixels() const;
   uint32_t pool() const { return pool_; }
 
-  /// Traces `samples` samples from `first_sample` of pixels [first_pixel, first_pixel + pixels).
+  /// Traces `samples` samples from `first_sample` of pixels [first_pixel, first_pixel + pixels) and adds them to the
+  /// film; pixel numbers run along 8 x 8 tiles (padded_pixels), those outside the picture are skipped.
   void trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint32_t first_sample, uint32_t samples);
 
-  /// Sums per pixel and scramble: width*height*8 of (r, g, b, count).
-  std::vector<w_float4> read_film() const { return film_.read(device_); }
-  /// Sums per pixel of the four feature vectors, and ply numbers; empty without the feature.
-  std::vector<w_float4> read_aov() const;
-  std::vector<uint32_t> read_ply() const;
-  WaveCounts counts() const;
-  uint64_t bytes() const { return bytes_; }
+  /// Waits for every launch and counts the CPU seconds of all threads over the compute units as its time, which other
+  /// programs on the machine disturb less than the clock; for CPU devices.
+  void count_cpu_time(bool yes) { count_cpu_time_ = yes; }
 
-  static constexpr int kScrambles = 8;
+  /// While set, trace() reads back the rays that it sends: its own times then say little. Null ends it.
+  void record(RayRecord* record) { record_ = record; }
+  /// Puts recorded rays into the path state; the pool must be as large as that of the wavefront they come from.
+  void load(const RayBatch& batch);
+  /// Sends the loaded rays through the same launch as trace(), once. Returns seconds by the device's clock.
+  double trace_loaded(const RayBatch& batch);
+  /// What trace_loaded() found, per ray: t, kind, code as in RayBatch::found; of shadow rays x = 1 where light arrives.
+  std::vector<w_float4> read_found(const RayBatch& batch) const;
+
+  FilmDevice& film() { return film_; }
+  WaveCounts counts() const;
+  uint64_t bytes() const { return bytes_ + film_.bytes(); }
 
  private:
+  // Places of the queue lengths in queue_counts_.
+  static constexpr uint32_t kGenerated = 0, kHits = 1, kShaded[2] = {5, 9}, kQueueCounts = 13;
+
   void build_programs(const std::filesystem::path& kernel_dir);
   cl::Kernel& kernel(const std::string& name) { return kernels_.at(name); }
-  void launch(const std::string& name, size_t items);
+  void launch(const std::string& name, size_t items, bool camera_rays = false);
+  bool in_packets(uint32_t depth) const { return depth == 0 && features_.packets(); }
+  /// Kernel that finds the nearest hits at this depth.
+  const char* nearest(uint32_t depth) const { return in_packets(depth) ? "intersect_packets" : "intersect"; }
+  void launch_intersect(const Buffer<uint32_t>& list, uint32_t count_index, uint32_t depth, size_t bound);
+  void launch_connect(uint32_t count_index, uint32_t depth, size_t bound);
+  void set_frame(const WFrame& frame);
+  void keep_rays(const WFrame& frame, RayKind kind, const Buffer<uint32_t>& list, uint32_t count_index, uint32_t depth);
   void compact(const Buffer<uint32_t>& list, uint32_t count_index, uint32_t total_index, size_t bound,
                const Buffer<uint32_t>& out0, const Buffer<uint32_t>& out1, const Buffer<uint32_t>& out2);
   uint32_t bins() const { return features_.fibres ? 4 : 3; }  // W_BINS of compact.cl
@@ -69,15 +73,24 @@ class Wavefront {
   uint32_t pool_;
   uint64_t bytes_ = 0;
   std::map<std::string, cl::Kernel> kernels_;
-  std::vector<std::pair<std::string, cl::Event>> pending_;
+  struct Launch {
+    std::string kernel;
+    cl::Event event;
+    bool camera_rays;
+    double cpu_seconds;
+  };
+  std::vector<Launch> pending_;
   WaveCounts counts_;
+  RayRecord* record_ = nullptr;
+  bool count_cpu_time_ = false;
+  uint32_t waves_ = 0;
 
   Buffer<w_float4> ray_o_, ray_l_, ray_d_, weight_, hit_, radiance_, shadow_o_, shadow_l_, shadow_d_, shadow_c_;
   Buffer<std::array<float, 2>> hit_uv_;
   Buffer<uint32_t> mask_, active_[2], ply_list_, surface_list_, miss_list_, fibre_list_, shadow_list_, spare_list_,
       chunk_, queue_counts_;
-  Buffer<w_float4> film_, aov_, aov_film_;
-  Buffer<uint32_t> ply_film_;
+  Buffer<w_float4> aov_;
+  FilmDevice film_;
 };
 
 }  // namespace wale

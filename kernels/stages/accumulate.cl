@@ -7,13 +7,15 @@
 /* A sample so bright that the sum of as many would overflow counts as not finite. */
 #define W_SUM_HEADROOM 1e5f
 
-__kernel void accumulate(WFrame frame, WCamera camera, uint pixels, __global const float4* radiance,
-                         __global float4* film, __global uint* events) {
-  const uint g = get_global_id(0);
-  if (g >= pixels) return;
+/* Adds `pixels` pixels of the wave, from its pixel `first` on, to the film's from film_first on; both are in the order
+   of pixel numbers. */
+__kernel void accumulate(WFrame frame, WCamera camera, uint first, uint film_first, uint pixels,
+                         __global const float4* radiance, __global float4* film, __global uint* events) {
+  const uint i = get_global_id(0), g = first + i;
+  if (i >= pixels) return;
   int x, y;
   if (!w_pixel_xy(frame.first_pixel + g, camera.width, camera.height, &x, &y)) return;
-  __global float4* out = film + (ulong)((uint)y * (uint)camera.width + (uint)x) * W_SCRAMBLES;
+  __global float4* out = film + (ulong)(film_first + i) * W_SCRAMBLES;
   for (uint k = 0; k < frame.samples_in_wave; ++k) {
     float4 value = radiance[g * frame.samples_in_wave + k];
     value.w = 1.0f;

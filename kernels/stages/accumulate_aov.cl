@@ -1,16 +1,16 @@
 #include "stages/path_state.clh"
 
 /* First-hit features: sums over samples of 4 x float4 per pixel, the last w counts the samples that met something;
-   and the ply of the pixel's first sample. */
-__kernel void accumulate_aov(WFrame frame, WCamera camera, uint pixels, __global const float4* aov,
-                             __global float4* film, __global uint* ply) {
-  const uint g = get_global_id(0);
-  if (g >= pixels) return;
+   and the ply of the pixel's first sample. Arguments as in accumulate. */
+__kernel void accumulate_aov(WFrame frame, WCamera camera, uint first, uint film_first, uint pixels,
+                             __global const float4* aov, __global float4* film, __global uint* ply) {
+  const uint i = get_global_id(0), g = first + i;
+  if (i >= pixels) return;
   int x, y;
   if (!w_pixel_xy(frame.first_pixel + g, camera.width, camera.height, &x, &y)) return;
-  const ulong pixel = (ulong)((uint)y * (uint)camera.width + (uint)x);
+  const ulong pixel = (ulong)(film_first + i);
   for (uint k = 0; k < frame.samples_in_wave; ++k) {
-    __global const float4* in = aov + (ulong)(g * frame.samples_in_wave + k) * 4;
+    __global const float4* in = aov + ((ulong)g * frame.samples_in_wave + k) * 4;
     if (frame.samples_before + k == 0) ply[pixel] = as_uint(in[3].w);
     film[pixel * 4] += in[0];
     film[pixel * 4 + 1] += in[1];

@@ -105,6 +105,13 @@ def scenes():
              "fabrics": [{"mesh": "mesh.obj", "pattern": {"file": "tile.json", "period": [0.01, 0.01]},
                           "repeats": [2, 2], "material": "m", "transform": {"scale": 2, "rotate": [0, 90, 0]}}]}
     write("scene", "files", "// beside it: the files\n" + json.dumps(files))
+    fabric = {"mesh": {"file": "mesh.obj"}, "pattern": "tile.json", "uv_metres": True, "material": "m", "detail": "paper",
+              "color_image": {"file": "colors.png", "map": "stitches", "origin": [1, 2], "size": [8, 8]}}
+    write("scene", "stitches", json.dumps({"wale": 1, "materials": {"m": {"type": "ply"}}, "fabrics": [fabric]}, indent=2))
+    write("scene", "shapes", json.dumps(
+        {"wale": 1, "objects": [{"type": "mesh", "mesh": "mesh.obj", "transform": {"translate": [0, 0, 1]}}],
+         "lights": [{"type": "sphere", "position": [0, 1, 0], "radius": 0.1, "radiance": 2},
+                    {"type": "mesh", "mesh": "mesh.obj", "radiance": [1, 1, 1]}]}, indent=2))
     yarn = {"preset": "silk", "fibre_color": [0.9, 0.8, 0.7], "roughness": 5, "ior": 1.5,
             "scattering": {"optical_radius": 2.5, "forward_decay": 0.9, "backward_deflection": -30},
             "fibres": {"count": 90, "twist": -20}}
@@ -112,6 +119,8 @@ def scenes():
     write("material", "joined", '{"type": "ply", "color": "#102030", "translucency": 0.7}\n' + json.dumps(yarn))
     write("material", "striped", '{"type": "ply", "heather": {"yarn": 0.1}}\n' + json.dumps(
         {"stripes": [{"color": [1, 0, 0], "length": 0.2}, {"color": "#ffffff", "length": 0.1}], "gloss": 1}))
+    write("material", "plies", '{"type": "ply", "fibres": {"count": 40}}\n' + json.dumps(
+        {"plies": ["#808080", [1, 0.5, 0]], "optical_radius": 3, "fibres": {"twist": 10}}))
     write("material", "direct", '{"type": "ply"}\n{"reflect": [0.1, 0.2, 0.3], "transmit": [0.3, 0.2, 0.1]}')
     write("overrides", "numbers", "film.size=[32, 16]\nintegrator.spp=2\nfabrics.0.yarn.plies=2\n")
     write("overrides", "names", "fabrics.cloth.detail=fibres\nlights.sun.intensity=3\nmaterials.yarn.color=#ff8000\n")

@@ -7,7 +7,12 @@ namespace wale::fuzz {
 const std::vector<Target>& targets() {
   static const std::vector<Target> all = {
       {"pyp", "tiles of Sperl et al.", "geom/pattern_pyp.cpp", true, {"*pattern", "*Q", "*E", "-1", "#"}, pyp},
-      {"leaf", "tiles of Leaf et al.", "geom/pattern_leaf.cpp", true, {"Num Yarns: ", "\n2\n", " 0 "}, leaf},
+      {"leaf",
+       "tiles of Leaf et al.",
+       "geom/pattern_leaf.cpp geom/recover_periods.cpp",
+       true,
+       {"Num Yarns: ", "\n2\n", " 0 "},
+       leaf},
       {"bcc", "binary curves", "geom/pattern_bcc.cpp", true, {"BCC\x44", "C0", "BS", "PL"}, bcc},
       {"obj", "OBJ meshes", "geom/obj_reader.cpp", true, {"\nv ", "\nvt ", "\nf ", "/", "//", "-1", "\\\n"}, obj},
       {"mesh_text",
@@ -40,7 +45,7 @@ const std::vector<Target>& targets() {
        scene},
       {"material",
        "material files",
-       "host/scene_materials.cpp",
+       "host/scene_materials.cpp host/materials.cpp",
        false,
        {"\"type\": \"ply\"", "\"color\"", "\"scattering\"", "\"fibres\"", "\"stripes\"", "\"optical_radius\"",
         "\"file\""},
@@ -51,7 +56,7 @@ const std::vector<Target>& targets() {
        false,
        {"fabrics.0.", "fabrics.cloth.", "lights.sun.", "materials.yarn.", "film.size=[", "=", "."},
        overrides},
-      {"image", "images", "host/image_io.cpp", false, {}, image},
+      {"image", "images", "host/image_io.cpp host/exr_header.cpp host/png_chunks.cpp", false, {}, image},
   };
   return all;
 }

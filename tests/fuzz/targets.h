@@ -12,7 +12,7 @@ namespace wale::fuzz {
 struct Target {
   const char* name;                     ///< also its folder of seeds below tests/fuzz/corpus
   const char* reader;                   ///< what it tries
-  const char* source;                   ///< file of the reader, for its coverage
+  const char* source;                   ///< the reader's own files, with blanks between, for coverage.sh
   bool own;                             ///< no library reads these bytes
   std::vector<std::string_view> words;  ///< pieces of the format, which blind mutation would not hit upon
   bool (*run)(std::string_view bytes);

@@ -1,4 +1,7 @@
+#include <ctime>
+
 #include "tests/geom/tile_fixtures.h"
+#include "tests/tolerances.h"
 
 namespace wale {
 namespace {
@@ -166,6 +169,22 @@ TEST(LeafReader, ThousandsOfEndsInOnePlaceAreRefused) {
   hints.period = {0.001, 0.001};
   const auto file = folder.write("tile_0.5.txt", text);
   expect_user_error([&] { read_pattern(file, hints); }, {"more than 64 ends", "yarn radius"});
+}
+// A file of 12 KiB where no period fits: each of 576 pairs of periods was tried to its end, for seconds.
+TEST(LeafReader, EndsWithoutOrderAreRefusedSoon) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> place(0, 1);
+  std::string text = "Num Yarns: 256\n";
+  for (int i = 0; i < 256; ++i) {
+    text += "3\n";
+    for (int k = 0; k < 3; ++k) {
+      const double x = place(random), y = place(random);
+      text += fmt::format("{:.4f} {:.4f} 0\n", x, y);
+    }
+  }
+  const std::clock_t start = std::clock();
+  expect_refused(text, {"cannot be recovered", "the likeliest", "of 512 curve ends"}, "tile_0.1.txt");
+  EXPECT_LE(double(std::clock() - start) / CLOCKS_PER_SEC, tolerance::kReaderSeconds);
 }
 TEST(LeafReader, WriterRefusesRings) {
   ScratchFolder folder;

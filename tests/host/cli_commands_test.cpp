@@ -136,6 +136,19 @@ TEST_F(CliCommands, StatisticsOfARender) {
   EXPECT_GT(s["geometry"]["ply segments"]["bytes"].get<size_t>(), 0u);
   for (const char* stage : {"knit", "warp", "build tree", "intersect", "connect"})
     EXPECT_GT(s["stage_seconds"].at(stage).get<double>(), 0) << stage;
+  std::map<std::string, Json> stages;
+  for (const Json& stage : s["stages"]) {
+    stages[stage["stage"]] = stage;
+    for (const char* key : {"seconds", "launches", "items", "ns_per_item", "bytes_per_item", "floor_ns"})
+      EXPECT_GT(stage[key].get<double>(), 0) << key << " of " << stage;
+  }
+  EXPECT_EQ(stages["intersect"]["items"],
+            s["rays"]["primary"]["count"].get<size_t>() + s["rays"]["bounce"]["count"].get<size_t>());
+  EXPECT_EQ(stages["connect"]["items"], s["rays"]["shadow"]["count"]);
+  EXPECT_EQ(stages["intersect"]["items"].get<size_t>(),
+            stages["shade_ply"]["items"].get<size_t>() + stages["miss"]["items"].get<size_t>());
+  EXPECT_FALSE(stages.contains("shade_surface"));
+  EXPECT_GT(s["ns_per_path_vertex"], stages["intersect"]["ns_per_item"]);
   EXPECT_EQ(s["samples"], 16 * 16 * 16);
   EXPECT_EQ(s["image"], (Json{{"width", 16}, {"height", 16}, {"samples_per_pixel", 16.0}}));
   EXPECT_EQ(s["rays"]["primary"]["count"], 16 * 16 * 16);

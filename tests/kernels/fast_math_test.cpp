@@ -35,6 +35,8 @@ TEST_P(FastMath, SamplesThatAreNotFiniteAreCountedAndLeftOut) {
   cl_uint index = 0;
   kernel.setArg(index++, frame);
   kernel.setArg(index++, camera);
+  kernel.setArg(index++, 0u);
+  kernel.setArg(index++, 0u);
   kernel.setArg(index++, pixels);
   kernel.setArg(index++, radiance.cl());
   kernel.setArg(index++, film.cl());

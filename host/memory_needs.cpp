@@ -1,0 +1,82 @@
+#include "host/memory_needs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geom/error.h"
+#include "host/film_device.h"
+#include "host/world.h"
+
+namespace wale {
+namespace {
+
+// Per patch of a tree of 16-wide nodes that are two thirds full.
+constexpr uint64_t kTreeBytes = W_NODE_WORDS * 4 / 10 + 4;
+// What is gone before the rays: per vertex its anchor, per patch its run and box.
+constexpr uint64_t kWarpBytes = sizeof(WAnchor) + 1, kPackBytes = 40;
+
+std::string size_text(uint64_t bytes) {
+  return bytes < 1000000000 ? fmt::format("{:.1f} MB", 1e-6 * double(bytes))
+                            : fmt::format("{:.1f} GB", 1e-9 * double(bytes));
+}
+
+uint64_t leaf_words(const Patch& patch, uint32_t plies) {
+  return W_LEAF_HEADER + 3 * uint64_t(((patch.intervals + 3) * plies + 3) / 4 * 4);
+}
+
+}  // namespace
+
+std::vector<MemoryNeed> memory_needs(const World& world, const Features& features, uint32_t pool,
+                                     const DeviceTraits& traits) {
+  uint64_t vertices = 0, patches = 0, leaves = 0;
+  for (const Fabric& fabric : world.fabrics) {
+    vertices += fabric.anchors.size();
+    patches += fabric.patches.size();
+    for (const Patch& patch : fabric.patches) leaves += 4 * leaf_words(patch, fabric.runs[patch.run].plies);
+  }
+  const WCamera& camera = world.camera;
+  const uint64_t pixels = padded_pixels(camera.width, camera.height);
+  const uint64_t pixel_bytes = kScrambles * sizeof(w_float4) + (features.aovs ? 4 * sizeof(w_float4) + 4 : 0);
+  const uint64_t path_bytes = 10 * sizeof(w_float4) + 8 + 9 * 4 + (features.aovs ? 4 * sizeof(w_float4) : 0);
+  const double fits = std::sqrt(std::min(1.0, 0.5 * double(traits.global_bytes) / double(pixels * pixel_bytes)));
+  const std::string fewer = "fewer repeats, a coarser gauge or a larger tolerance";
+  std::vector<MemoryNeed> needs = {
+      {"film", pixels * pixel_bytes, true,
+       fmt::format("a film.size of at most {} x {}", int(camera.width * fits), int(camera.height * fits))},
+      {"path state", pool * path_bytes, false,
+       fmt::format("an integrator.pool of at most {}", traits.global_bytes / 2 / path_bytes)},
+      {"ply vertices", vertices * W_VERTEX_WORDS * 4, false, fewer},
+      {"ply leaves", leaves, false, fewer},
+      {"ply tree", patches * kTreeBytes, false, fewer},
+      {"warp and pack", vertices * kWarpBytes + patches * kPackBytes, true, fewer},
+      {"ply colours", world.ply_colors.size() * 4, false, "fewer colours"},
+      {"triangles", world.triangles.size() * 4 * 2, false, "simpler props"},
+      {"environment",
+       world.environment_tables.texels.size() * sizeof(w_float4) + world.environment_tables.cdf.size() * 4, false,
+       "a smaller environment image"}};
+  std::stable_sort(needs.begin(), needs.end(), [](const auto& a, const auto& b) { return a.bytes > b.bytes; });
+  return needs;
+}
+
+void require_memory(const Device& device, const std::vector<MemoryNeed>& needs) {
+  const DeviceTraits& traits = device.traits();
+  uint64_t all = 0;
+  for (const auto& need : needs) all += need.bytes;
+  if (all > traits.global_bytes) {
+    std::string largest;
+    for (size_t i = 0; i < std::min<size_t>(3, needs.size()); ++i)
+      largest += fmt::format("{}{} {}", i ? ", " : "", needs[i].name, size_text(needs[i].bytes));
+    user_error("device {} ({}) has {}, the scene needs {}: {} and less; use {}, or another device (see `wale devices`)",
+               device.number(), traits.name, size_text(traits.global_bytes), size_text(all), largest,
+               needs.front().instead);
+  }
+  for (const auto& need : needs)
+    if (!need.splits && need.bytes > traits.max_alloc_bytes)
+      user_error(
+          "device {} ({}) holds at most {} in one buffer, {} would need {}; use {}, or another device (see `wale "
+          "devices`)",
+          device.number(), traits.name, size_text(traits.max_alloc_bytes), need.name, size_text(need.bytes),
+          need.instead);
+}
+
+}  // namespace wale

@@ -1,0 +1,188 @@
+#include "host/rehearsal.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <exception>
+
+#include "host/program.h"
+
+namespace wale {
+
+struct Rehearsal::Part {
+  Device device;
+  ProgramText text;
+  std::vector<std::string> kernels;
+  size_t items = 1;
+  std::promise<void> done;
+};
+
+struct Rehearsal::Shared {
+  std::atomic<uint32_t> next{0};  ///< part that no child has begun
+};
+
+namespace {
+
+// A program out of the driver's cache is there sooner; its kernels are then taken to be there too.
+constexpr auto kOutOfCache = std::chrono::milliseconds(60);
+
+// Every argument zero: a buffer of zeros, or a zero of the parameter's size. PoCL takes any size for a struct, so that
+// the largest goes first.
+void set_zeros(cl::Kernel& kernel, const cl::Buffer& zeros) {
+  static constexpr std::array<char, 128> kNothing{};
+  for (cl_uint i = 0; i < kernel.getInfo<CL_KERNEL_NUM_ARGS>(); ++i) {
+    if (kernel.getArgInfo<CL_KERNEL_ARG_ADDRESS_QUALIFIER>(i) == CL_KERNEL_ARG_ADDRESS_GLOBAL) {
+      kernel.setArg(i, zeros);
+      continue;
+    }
+    cl_int error = CL_INVALID_ARG_SIZE;
+    for (size_t size = kNothing.size(); size > 0 && error != CL_SUCCESS; size -= 4)
+      error = clSetKernelArg(kernel(), i, size, kNothing.data());
+    if (error != CL_SUCCESS) throw cl::Error(error, "clSetKernelArg");
+  }
+}
+
+void build_and_launch(const Device& device, const ProgramText& text, const std::vector<std::string>& kernels,
+                      size_t items) {
+  const auto start = std::chrono::steady_clock::now();
+  cl::Program program = build_now(device, text);
+  if (std::chrono::steady_clock::now() - start < kOutOfCache) return;
+  const Buffer<uint32_t> zeros(device, std::vector<uint32_t>(1024, 0));
+  for (const auto& name : kernels) {
+    cl::Kernel kernel(program, name.c_str());
+    set_zeros(kernel, zeros.cl());
+    device.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device.global(items), device.local());
+  }
+  device.queue().finish();
+}
+
+}  // namespace
+
+// Parts of all devices in one order, the same in every process: first what is needed first, then the longest.
+static std::vector<Rehearsal::Part> parts_of(const std::vector<Device>& devices, const Rehearsal::PlanOf& plan_of) {
+  std::vector<Rehearsal::Part> parts;
+  for (const Device& device : devices) {
+    const Rehearsal::Plan plan = plan_of(device.traits());
+    const size_t first = parts.size();
+    for (const Stage& stage : plan.stages) {
+      if (!stage.used || !device.traits().parallel_builds) continue;
+      Rehearsal::Part& part = parts.emplace_back();
+      part.device = device;
+      part.text = stage.before_rays ? program_text(device.traits(), stage.file)
+                                    : program_text(device.traits(), stage.file, plan.options, plan.kernel_dir);
+      part.kernels = stage.kernels;
+      part.items = stage.before_rays ? Device::kLargeGrid : 1;
+    }
+    std::stable_sort(parts.begin() + std::ptrdiff_t(first), parts.end(), [](const auto& a, const auto& b) {
+      return std::pair(b.items, b.text.source.size()) < std::pair(a.items, a.text.source.size());
+    });
+  }
+  return parts;
+}
+
+Rehearsal::Rehearsal(const std::string& devices, PlanOf plan) : plan_(std::move(plan)) {
+  void* memory = mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  int ends[2];
+  if (memory == MAP_FAILED || pipe2(ends, O_CLOEXEC) != 0) {
+    shared_ = nullptr;
+    return;
+  }
+  shared_ = new (memory) Shared;
+  reports_ = ends[0];
+  const unsigned count = std::clamp(std::thread::hardware_concurrency(), 1u, 8u);
+  for (unsigned i = 0; i < count; ++i) {
+    const pid_t pid = fork();
+    if (pid == 0) child(devices, ends[1]);
+    if (pid > 0) children_.push_back(pid);
+  }
+  close(ends[1]);
+}
+
+void Rehearsal::child(const std::string& devices, int report) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const int nowhere = open("/dev/null", O_WRONLY);
+  dup2(nowhere, STDOUT_FILENO);
+  dup2(nowhere, STDERR_FILENO);
+  try {
+    const std::vector<DeviceTraits> traits = Device::list();
+    std::vector<Device> open_devices;
+    for (const unsigned number : device_numbers(devices)) {
+      if (!traits.at(number).compiles_at_launch) _exit(0);  // its parts would have other numbers here
+      open_devices.push_back(Device::open(number));
+    }
+    const std::vector<Part> parts = parts_of(open_devices, plan_);
+    for (uint32_t i; (i = shared_->next++) < parts.size();) {
+      build_and_launch(parts[i].device, parts[i].text, parts[i].kernels, parts[i].items);
+      if (write(report, &i, sizeof(i)) != sizeof(i)) _exit(0);
+    }
+  } catch (const std::exception&) {
+    // The parent meets the same fault and says so.
+  }
+  _exit(0);
+}
+
+void Rehearsal::begin(const std::vector<Device>& devices) {
+  parts_ = parts_of(devices, plan_);
+  compiled_.assign(parts_.size(), children_.empty());
+  for (size_t i = 0; i < parts_.size(); ++i) {
+    if (!parts_[i].device.traits().compiles_at_launch) compiled_[i] = true;
+    const std::lock_guard lock(parts_[i].device.programs().mutex);
+    parts_[i].device.programs().ahead.emplace(parts_[i].text.key(), parts_[i].done.get_future());
+  }
+  if (reports_ >= 0) threads_.emplace_back([this] { read_reports(); });
+  const size_t builders = std::min<size_t>(std::max(1u, std::thread::hardware_concurrency()), parts_.size());
+  for (size_t i = 0; i < builders; ++i) threads_.emplace_back([this] { build_next(); });
+}
+
+void Rehearsal::read_reports() {
+  uint32_t part = 0;
+  while (read(reports_, &part, sizeof(part)) == sizeof(part)) {
+    const std::lock_guard lock(mutex_);
+    if (part < compiled_.size()) compiled_[part] = true;
+    reported_.notify_all();
+  }
+  const std::lock_guard lock(mutex_);  // the children are gone: the rest is compiled here
+  compiled_.assign(compiled_.size(), true);
+  reported_.notify_all();
+}
+
+void Rehearsal::build_next() {
+  for (;;) {
+    std::unique_lock lock(mutex_);
+    if (next_ >= parts_.size()) return;
+    const size_t i = next_++;
+    reported_.wait(lock, [&] { return compiled_[i]; });
+    lock.unlock();
+    try {
+      build_now(parts_[i].device, parts_[i].text);
+    } catch (const std::exception&) {
+      // Whoever needs the program meets the same fault and says so.
+    }
+    parts_[i].done.set_value();
+  }
+}
+
+Rehearsal::~Rehearsal() {
+  size_t dropped;
+  {
+    const std::lock_guard lock(mutex_);
+    dropped = next_;
+    next_ = parts_.size();
+  }
+  for (size_t i = dropped; i < parts_.size(); ++i) parts_[i].done.set_value();
+  for (const int child : children_) kill(child, SIGKILL);
+  for (const int child : children_) waitpid(child, nullptr, 0);
+  for (auto& thread : threads_) thread.join();  // the pipe has ended
+  if (reports_ >= 0) close(reports_);
+  if (shared_) munmap(shared_, sizeof(Shared));
+}
+
+}  // namespace wale

@@ -1,0 +1,63 @@
+#pragma once
+#include <condition_variable>
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "host/device.h"
+#include "host/stages.h"
+
+namespace wale {
+
+/// Compiles programs before they are needed, while the host still knits. Whoever asks for one of them with
+/// build_program() waits for it instead of compiling it again.
+///
+/// PoCL makes machine code only when a kernel is launched, and one kernel of a process at a time. Its devices are
+/// therefore served by child processes, which build each program and launch its kernels once with zeros for arguments:
+/// that asks every kernel of Wale for nothing, and leaves its machine code in PoCL's cache.
+class Rehearsal {
+ public:
+  /// What will be compiled for a device.
+  struct Plan {
+    std::vector<Stage> stages;
+    std::string options;
+    std::filesystem::path kernel_dir;
+  };
+  using PlanOf = std::function<Plan(const DeviceTraits&)>;
+
+  /// `devices` as device_numbers() reads it. Forks: must come before the process's first call of OpenCL and its first
+  /// thread. What fails is left to whoever needs the program.
+  Rehearsal(const std::string& devices, PlanOf plan);
+  /// Builds in the devices' own contexts, on threads, what the children have compiled, or what other drivers compile.
+  void begin(const std::vector<Device>& devices);
+  /// Drops what has not begun. Children are killed.
+  ~Rehearsal();
+  Rehearsal(const Rehearsal&) = delete;
+  Rehearsal& operator=(const Rehearsal&) = delete;
+
+  struct Part;
+
+ private:
+  struct Shared;
+  [[noreturn]] void child(const std::string& devices, int report);
+  void read_reports();
+  void build_next();
+
+  PlanOf plan_;
+  Shared* shared_;  ///< memory that the children see too
+  std::vector<int> children_;
+  int reports_ = -1;
+
+  std::mutex mutex_;
+  std::condition_variable reported_;
+  std::vector<Part> parts_;
+  std::vector<bool> compiled_;  ///< by a child
+  size_t next_ = 0;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace wale
