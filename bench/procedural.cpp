@@ -52,13 +52,13 @@ Held hold(const BaseMesh& mesh, const Pattern& pattern, FabricSpec spec, Storage
   getrusage(RUSAGE_SELF, &usage);
   fmt::print(
       "{:10} {} segments, {} leaves, {:.2f} B a segment to trace ({:.2f} nodes, {:.2f} lattice and tile tables, {:.2f} "
-      "leaves), {:.2f} in vertices; lattice {:.2f} s, upload {:.2f} s (warp {:.2f}, pack {:.2f}, tree {:.2f}); peak "
+      "leaves), {:.2f} in frames; lattice {:.2f} s, upload {:.2f} s (warp {:.2f}, pack {:.2f}, tree {:.2f}); peak "
       "{:.0f} "
       "MB\n",
       storage == Storage::stored ? "stored" : "procedural", f.segment_count, f.patch_count,
       double(f.tree.nodes.bytes() + f.lattice.bytes() * (storage == Storage::procedural) + f.tree.leaves.bytes()) / n,
       double(f.tree.nodes.bytes()) / n, double(f.lattice.bytes()) / n, double(f.tree.leaves.bytes()) / n,
-      double(f.vertices.bytes()) / n, held.knit_seconds, held.upload_seconds, f.warp_seconds, f.pack_seconds,
+      double(f.frames.bytes()) / n, held.knit_seconds, held.upload_seconds, f.warp_seconds, f.pack_seconds,
       f.build_seconds, double(usage.ru_maxrss) / 1024);
   return held;
 }

@@ -92,8 +92,7 @@ int run_export(const SceneArgs& args, const std::filesystem::path& output, const
   }
   const Device device = one_device(args);
   const World world = world_of(scene, loaders, args.quiet);
-  const SceneDevice on_device(device, world, local_stage(scene.integrator));
-  const std::vector<float> vertices = on_device.fabric().vertices.read(device);
+  const std::vector<float> points = FabricWarp(device, fabric_inputs(world), world.origin).points().read(device);
   std::vector<ExportCurve> curves;
   size_t first = 0;  // vertices of the fabrics follow one another
   for (const auto& fabric : world.fabrics) {
@@ -103,8 +102,7 @@ int run_export(const SceneArgs& args, const std::filesystem::path& output, const
         curve.radius = run.radius;
         const uint32_t skip = run.ghost_ends ? 1 : 0;
         for (uint32_t k = skip; k + skip < run.count; ++k) {
-          const float* v =
-              &vertices[(first + run.first_vertex + size_t(curve_number) * run.count + k) * W_VERTEX_WORDS];
+          const float* v = &points[(first + run.first_vertex + size_t(curve_number) * run.count + k) * 3];
           curve.points.push_back(
               {float(v[0] + world.origin.x), float(v[1] + world.origin.y), float(v[2] + world.origin.z)});
         }

@@ -5,10 +5,10 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "geom/error.h"
-#include "host/program.h"
 
 namespace wale {
 namespace {
@@ -21,74 +21,6 @@ size_t cells_of(const Fabric& fabric) {
     cells = std::max(cells, size_t(grid.first_cell) + size_t(grid.size.x) * size_t(grid.size.y));
   for (const Patch& patch : fabric.patches) cells = std::max<size_t>(cells, patch.cell + 1);
   return cells;
-}
-
-// What the warp reads, of all fabrics.
-struct WarpInput {
-  std::vector<WAnchor> anchors;
-  std::vector<float> positions, normals, cloth;
-  std::vector<uint32_t> triangles;
-  std::vector<uint8_t> flags;
-};
-
-void append(WarpInput& out, const Fabric& fabric, dvec3 origin) {
-  const uint32_t first_triangle = uint32_t(out.triangles.size() / 3), first_point = uint32_t(out.positions.size() / 3);
-  const size_t first_vertex = out.anchors.size();
-  for (const Anchor& a : fabric.anchors)
-    out.anchors.push_back({a.triangle + first_triangle, a.b1, a.b2, a.height, a.nx, a.ny, a.nz, a.length});
-  for (size_t i = 0; i < fabric.mesh.position.size(); ++i)
-    for (int k = 0; k < 3; ++k) {
-      out.positions.push_back(float(fabric.mesh.position[i][k] - origin[k]));
-      out.normals.push_back(float(fabric.mesh.normal[i][k]));
-    }
-  for (size_t t = 0; t < fabric.mesh.triangle.size(); ++t) {
-    const uint32_t chart = t < fabric.chart_of_triangle.size() ? fabric.chart_of_triangle[t] : W_NONE;
-    const dvec2 per_metre = chart < fabric.uv_per_metre.size() ? fabric.uv_per_metre[chart] : dvec2(1);
-    for (int corner = 0; corner < 3; ++corner) {
-      out.triangles.push_back(fabric.mesh.triangle[t][corner] + first_point);
-      // Only differences matter: relative to the first corner, which keeps their precision in float.
-      const dvec2 xy = (fabric.mesh.uv[t][corner] - fabric.mesh.uv[t][0]) / per_metre;
-      out.cloth.push_back(float(xy.x));
-      out.cloth.push_back(float(xy.y));
-    }
-  }
-  out.flags.resize(out.anchors.size(), 0);
-  for (const PlyRun& run : fabric.runs)
-    for (uint32_t p = 0; p < run.plies; ++p) {
-      const size_t first = first_vertex + run.first_vertex + size_t(p) * run.count;
-      if (run.count == 0) continue;
-      out.flags[first] |= 1;
-      out.flags[first + run.count - 1] |= 2;
-    }
-}
-
-// `more`: vertices to leave room for behind them.
-Buffer<float> warp(const Device& device, const WarpInput& in, size_t more) {
-  const uint32_t count = uint32_t(in.anchors.size());
-  Buffer<float> vertices(device, (size_t(count) + more) * W_VERTEX_WORDS);
-  if (count == 0) return vertices;
-  const Buffer<WAnchor> anchors(device, in.anchors);
-  const Buffer<float> positions(device, in.positions), normals(device, in.normals), cloth(device, in.cloth);
-  const Buffer<uint32_t> triangles(device, in.triangles);
-  const Buffer<uint8_t> flags(device, in.flags);
-  const cl::Program program = build_program(device, "warp.cl");
-  cl::Kernel points(program, "warp_points"), frames(program, "warp_normals");
-  for (cl::Kernel* kernel : {&points, &frames}) {
-    kernel->setArg(0, anchors.cl());
-    kernel->setArg(1, positions.cl());
-    kernel->setArg(2, normals.cl());
-    kernel->setArg(3, triangles.cl());
-  }
-  points.setArg(4, vertices.cl());
-  points.setArg(5, count);
-  frames.setArg(4, cloth.cl());
-  frames.setArg(5, flags.cl());
-  frames.setArg(6, vertices.cl());
-  frames.setArg(7, count);
-  device.queue().enqueueNDRangeKernel(points, cl::NullRange, device.large_global(count), device.local());
-  device.queue().enqueueNDRangeKernel(frames, cl::NullRange, device.large_global(count), device.local());
-  device.queue().finish();
-  return vertices;
 }
 
 dvec2 cell_corner(const UvGrid& grid, uint32_t local) {
@@ -158,6 +90,13 @@ void append(CellLists& out, const Fabric& fabric, size_t cells, uint32_t first_c
 
 }  // namespace
 
+void update_fabrics(const Device& device, FabricDevice& fabrics, std::span<const float> positions,
+                    std::span<const float> normals) {
+  if (!fabrics.warp) bug("fabrics: not uploaded to be updatable");
+  fabrics.warp->move(device, positions, normals);
+  refit(device, fabrics.tree);
+}
+
 Box clipped_triangle_box(const BaseMesh& mesh, uint32_t triangle, dvec2 cell_lo, dvec2 cell_hi, dvec3 origin) {
   struct Corner {
     dvec2 uv;
@@ -193,20 +132,22 @@ Box clipped_triangle_box(const BaseMesh& mesh, uint32_t triangle, dvec2 cell_lo,
   return box;
 }
 
-FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> inputs, dvec3 origin, LocalStage stage) {
+FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> inputs, dvec3 origin, LocalStage stage,
+                            bool updatable) {
   FabricDevice out;
   const double start = now();
-  WarpInput warp_input;
   std::vector<PlyPatch> patches;
   std::vector<LatticeInput> lattices;
   size_t curves = 0;
+  uint32_t first_vertex = 0, first_triangle = 0;
   for (uint32_t f = 0; f < inputs.size(); ++f) {
     const Fabric& fabric = *inputs[f].fabric;
-    out.first_vertex.push_back(uint32_t(warp_input.anchors.size()));
+    out.first_vertex.push_back(first_vertex);
     out.first_cell.push_back(uint32_t(out.cell_count));
-    out.first_triangle.push_back(uint32_t(warp_input.triangles.size() / 3));
-    if (fabric.lattice.empty()) append(warp_input, fabric, origin);  // a lattice needs no mesh
-    std::vector<uint32_t> first_curve;                               // per run, over all fabrics
+    out.first_triangle.push_back(first_triangle);
+    first_vertex += uint32_t(fabric.anchors.size());
+    if (fabric.lattice.empty()) first_triangle += uint32_t(fabric.mesh.triangle.size());
+    std::vector<uint32_t> first_curve;  // per run, over all fabrics
     for (const PlyRun& run : fabric.runs) {
       first_curve.push_back(uint32_t(curves));
       curves += run.plies;
@@ -228,18 +169,30 @@ FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> i
         "fabric '{}': it is held as a lattice, which has no UV cells; use integrator.local_stage \"exact\", or "
         "storage \"stored\" and no lattice",
         lattices[0].fabric->name);
+  if (!lattices.empty() && updatable) bug("fabric '{}': a lattice cannot follow its mesh", lattices[0].fabric->name);
   LatticeFabrics placed;
-  if (!lattices.empty()) placed = place_lattices(device, lattices, origin, warp_input.anchors.size(), curves);
+  if (!lattices.empty()) placed = place_lattices(device, lattices, origin, first_vertex, curves);
   for (const PlyPatch& p : placed.patches) out.segment_count += size_t(p.intervals) * p.plies;
   out.segment_count += placed.segments;
   patches.insert(patches.end(), placed.patches.begin(), placed.patches.end());
-  out.vertex_count = warp_input.anchors.size() + placed.stored_vertices;
-  out.triangle_count = warp_input.triangles.size() / 3;
   out.patch_count = patches.size() + placed.procedural.number.size();
-  out.vertices = warp(device, warp_input, placed.stored_vertices);
-  placed.device.warp(device, placed.runs, out.vertices);
+  out.vertex_count = first_vertex + placed.stored_vertices;
+  out.triangle_count = first_triangle;
   out.tight_joints = placed.tight_joints;
+
+  auto warp = std::make_unique<FabricWarp>(device, inputs, origin, placed.stored_vertices);
+  out.frames = warp->frames();
+  const Buffer<float> points = warp->points();
+  placed.device.warp(device, placed.runs, points, out.frames);
   out.warp_seconds = now() - start;
+  if (stage != LocalStage::exact) {
+    out.base_positions = warp->base_positions();
+    out.base_indices = warp->base_triangles();
+  }
+  if (updatable)
+    out.warp = std::move(warp);
+  else
+    warp.reset();
 
   std::vector<Box> group_boxes;
   if (stage != LocalStage::exact) {
@@ -247,13 +200,14 @@ FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> i
     for (size_t f = 0; f < inputs.size(); ++f)
       append_group_boxes(group_boxes, *inputs[f].fabric, origin, out.first_cell[f]);
   }
-  out.tree = build_ply_tree(device, patches, out.vertices, group_boxes, std::move(placed.procedural));
+  out.tree = build_ply_tree(device, patches, points, group_boxes, updatable, std::move(placed.procedural));
   out.lattice = std::move(placed.device);
   out.pack_seconds = out.tree.pack_seconds;
   out.build_seconds = out.tree.build_seconds;
-  out.node_count = out.tree.node_cell.count();
-  out.bytes = out.vertices.bytes() + out.tree.leaves.bytes() + out.tree.nodes.bytes() + out.tree.node_cell.bytes();
-  out.bytes += out.lattice.bytes();
+  out.node_count = out.tree.nodes.count() / W_NODE_WORDS;
+  out.bytes = out.frames.bytes() + out.tree.leaves.bytes() + out.tree.nodes.bytes() + out.tree.node_cell.bytes() +
+              out.lattice.bytes();
+  if (updatable) out.bytes += points.bytes() + out.warp->bytes() + out.tree.refit->bytes();
   if (stage == LocalStage::exact) return out;
 
   std::vector<uint32_t> code_of_vertex(out.vertex_count, W_NONE);
@@ -268,8 +222,6 @@ FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> i
     append(lists, *inputs[f].fabric, last - out.first_cell[f], out.first_cell[f], out.first_triangle[f], code_of_vertex,
            out.first_vertex[f]);
   }
-  out.base_positions = Buffer<float>(device, warp_input.positions);
-  out.base_indices = Buffer<uint32_t>(device, warp_input.triangles);
   out.base_uv = Buffer<float>(device, lists.uv);
   out.cell_triangle_offsets = Buffer<uint32_t>(device, lists.triangle_offsets);
   out.cell_triangles = Buffer<uint32_t>(device, lists.triangles);

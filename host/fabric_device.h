@@ -1,22 +1,15 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
-#include "geom/fabric.h"
+#include "host/fabric_warp.h"
 #include "host/lattice_fabrics.h"
 #include "host/ply_tree.h"
 #include "shared/wale_types.h"
 
 namespace wale {
-
-/// A fabric and what its plies are made of on the device.
-struct FabricInput {
-  const Fabric* fabric = nullptr;
-  uint32_t material = 0;        ///< ply material
-  float tau = 0;                ///< effective optical radius of its plies; -1 or less = opaque
-  uint32_t fibre_material = 0;  ///< of its explicit fibres, which are opaque
-};
 
 /// How the plies that a ray meets are found: W_LOCAL_STAGE of the kernels.
 enum class LocalStage { exact = 0, cell = 1, ring = 2 };
@@ -24,10 +17,11 @@ enum class LocalStage { exact = 0, cell = 1, ring = 2 };
 /// All fabrics of a scene on the device, warped, packed and with their tree. Vertices, cells, triangles and grids of
 /// the fabrics are numbered one fabric after the other; fabric f's vertices start at first_vertex[f].
 struct FabricDevice {
-  Buffer<float> vertices;  ///< W_VERTEX_WORDS a vertex
+  Buffer<float> frames;  ///< W_FRAME_WORDS a vertex; where it lies is in the leaves
   PlyTree tree;
-  LatticeDevice lattice;           ///< of fabrics that have one
-  uint32_t tight_joints = 0;       ///< that made procedural fabrics stored, see place_lattices
+  LatticeDevice lattice;             ///< of fabrics that have one
+  uint32_t tight_joints = 0;         ///< that made procedural fabrics stored, see place_lattices
+  std::unique_ptr<FabricWarp> warp;  ///< of updatable fabrics
   std::vector<uint32_t> first_vertex, first_cell, first_triangle;
 
   // Filled for the cell stages only; layouts as in kernels/geometry/scene.clh.
@@ -41,9 +35,16 @@ struct FabricDevice {
   double warp_seconds = 0, pack_seconds = 0, build_seconds = 0;
 };
 
-/// Warps, packs and uploads. `origin` is subtracted from base positions in double. Throws device errors only.
+/// Warps, packs and uploads. `origin` is subtracted from base positions in double. `updatable`: keep what
+/// update_fabrics() needs, about 47 bytes a segment more; for the exact stage only. Throws device errors only.
 FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> inputs, dvec3 origin,
-                            LocalStage stage = LocalStage::exact);
+                            LocalStage stage = LocalStage::exact, bool updatable = false);
+
+/// Carries updatable fabrics on to moved base meshes, on the device: three floats a mesh vertex, all fabrics one after
+/// the other, metres from the origin that upload_fabrics() was given, and unit normals. Nothing is allocated. Throws a
+/// user error where a number is not finite or a ply ends up beyond kLargestCoordinate.
+void update_fabrics(const Device& device, FabricDevice& fabrics, std::span<const float> positions,
+                    std::span<const float> normals);
 
 /// Bounds of the part of a cell that a triangle covers (host side of the cell stages; exposed for tests): the triangle
 /// is clipped in UV to the cell, so that a large triangle under many cells gives each its own part. Empty box when they

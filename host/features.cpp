@@ -38,6 +38,9 @@ Features analyse(const World& world, const IntegratorScene& integrator, bool aov
   for (const auto& fabric : world.fabrics) {
     f.plies |= fabric.report.plies > 0;
     f.fibres |= fabric.report.fibres > 0;
+    const bool lattice = !fabric.lattice.empty();
+    f.mesh_warp |= !lattice && !fabric.anchors.empty();
+    f.stored_lattice |= lattice && !fabric.procedural;
     f.procedural |= fabric.procedural;
   }
   f.triangles = world.triangle_count() > 0;
@@ -62,6 +65,10 @@ Features foresee(const Scene& scene, bool aovs, int device_lanes) {
     f.fibres |= fibres || fabric.spec.flyaways.any();
     f.detail |= fabric.spec.detail == Detail::maps || fabric.spec.detail == Detail::paper;
     f.ply_colors |= colors_vary(yarn, fabric.color_image);
+    const bool procedural = fabric.spec.storage == Storage::procedural, lattice = fabric.spec.lattice > 0;
+    f.mesh_warp |= !lattice && !procedural;
+    f.stored_lattice |= lattice && !procedural;
+    f.procedural |= procedural;
   }
   for (const auto& object : scene.objects) {
     f.spheres |= object.kind == ObjectScene::Kind::sphere;

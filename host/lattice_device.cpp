@@ -7,7 +7,8 @@ namespace wale {
 LatticeDevice::LatticeDevice(const Device& device, const LatticeTables& tables)
     : lattice(device, tables.lattice()), tiles(device, tables.words()), patch_bits(tables.patch_bits()) {}
 
-void LatticeDevice::warp(const Device& device, std::span<const StoredRun> runs, const Buffer<float>& vertices) const {
+void LatticeDevice::warp(const Device& device, std::span<const StoredRun> runs, const Buffer<float>& points,
+                         const Buffer<float>& frames) const {
   if (runs.empty()) return;
   const cl::Program program = build_program(device, "lattice_vertices.cl");
   for (const char* name : {"lattice_points", "lattice_normals"})
@@ -16,9 +17,10 @@ void LatticeDevice::warp(const Device& device, std::span<const StoredRun> runs, 
       kernel.setArg(0, lattice.cl());
       kernel.setArg(1, tiles.cl());
       kernel.setArg(2, run);
-      kernel.setArg(3, vertices.cl());
-      kernel.setArg(4, items);
-      device.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device.global(items), device.local());
+      kernel.setArg(3, points.cl());
+      kernel.setArg(4, frames.cl());
+      kernel.setArg(5, items);
+      device.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device.large_global(items), device.local());
     }
   device.queue().finish();
 }
@@ -37,7 +39,7 @@ std::vector<Box> LatticeDevice::boxes(const Device& device, const std::vector<ui
   kernel.setArg(4, boxes.cl());
   kernel.setArg(5, found.cl());
   kernel.setArg(6, uint32_t(leaves.size()));
-  device.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device.global(leaves.size()), device.local());
+  device.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device.large_global(leaves.size()), device.local());
   tight = found.read(device)[0];
   return boxes.read(device);
 }

@@ -17,8 +17,9 @@ struct LatticeDevice {
   LatticeDevice(const Device& device, const LatticeTables& tables);
   size_t bytes() const { return lattice.bytes() + tiles.bytes(); }
 
-  /// Fills in the stored vertices of these runs.
-  void warp(const Device& device, std::span<const StoredRun> runs, const Buffer<float>& vertices) const;
+  /// Fills in the stored vertices of these runs: x, y, z and W_FRAME_WORDS each.
+  void warp(const Device& device, std::span<const StoredRun> runs, const Buffer<float>& points,
+            const Buffer<float>& frames) const;
 
   /// Boxes of the leaves (numbers without W_LEAF_PROCEDURAL), and how many joints inside them are bent too far, or have
   /// edges too short, for procedural leaves.

@@ -9,18 +9,6 @@ namespace {
 
 constexpr size_t kMostIds = 0xfffffff0;  // W_NEIGHBOUR_NONE of the kernels
 
-size_t vertices_of(const Fabric& fabric) {
-  size_t vertices = 0;
-  for (const LatticeChart& chart : fabric.lattice)
-    for (const TileYarn& yarn : chart.tile.yarns) {
-      const ivec2 tiles = chart.lattice.tiles;
-      const size_t ends = chart.lattice.wrap[yarn.axis] ? 3 : 1;
-      vertices +=
-          size_t(tiles[1 - yarn.axis]) * size_t(chart.tile.plies) * (size_t(tiles[yarn.axis]) * yarn.samples + ends);
-    }
-  return vertices;
-}
-
 // Without a copy where `all` is empty, as it is for the one large fabric of most scenes.
 template <typename T>
 void append(std::vector<T>& all, std::vector<T>&& more) {
@@ -31,6 +19,18 @@ void append(std::vector<T>& all, std::vector<T>&& more) {
 }
 
 }  // namespace
+
+size_t lattice_vertices(const Fabric& fabric) {
+  size_t vertices = 0;
+  for (const LatticeChart& chart : fabric.lattice)
+    for (const TileYarn& yarn : chart.tile.yarns) {
+      const ivec2 tiles = chart.lattice.tiles;
+      const size_t ends = chart.lattice.wrap[yarn.axis] ? 3 : 1;
+      vertices +=
+          size_t(tiles[1 - yarn.axis]) * size_t(chart.tile.plies) * (size_t(tiles[yarn.axis]) * yarn.samples + ends);
+    }
+  return vertices;
+}
 
 LatticeFabrics place_lattices(const Device& device, std::vector<LatticeInput> inputs, dvec3 origin, size_t first_vertex,
                               size_t& plies) {
@@ -49,7 +49,7 @@ LatticeFabrics place_lattices(const Device& device, std::vector<LatticeInput> in
       for (size_t i = 0; i < inputs.size(); ++i) {
         if (stored[i] == procedural) continue;
         inputs[i].first_vertex = uint32_t(next);
-        next += vertices_of(*inputs[i].fabric);
+        next += lattice_vertices(*inputs[i].fabric);
         if (!procedural) out.stored_vertices = next - first_vertex;
       }
     if (next >= kMostIds)

@@ -14,6 +14,9 @@ struct LatticeFabrics {
   uint32_t tight_joints = 0;  ///< which made fabrics stored that were to be procedural
 };
 
+/// Ply vertices of a lattice fabric that is stored, ghosts included.
+size_t lattice_vertices(const Fabric& fabric);
+
 /// Numbers the fabrics and uploads their lattices. A procedural fabric with joints that need a sphere (pack.cl) inside
 /// a yarn becomes a stored one, of the same bits. `plies`: number of the first ply; set to that behind the last. Throws
 /// a user error when ids run out.

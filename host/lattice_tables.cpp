@@ -25,6 +25,11 @@ bool is_open(const Lattice& lattice, const TileYarn& yarn) { return lattice.wrap
 
 }  // namespace
 
+uint32_t patches_of(const TileYarn& yarn, uint32_t plies) {
+  const uint32_t most = W_LEAF_LANES / plies;
+  return (yarn.samples + most - 1) / most;
+}
+
 LatticeTables::LatticeTables(std::span<const LatticeInput> inputs, dvec3 origin) {
   for (const LatticeInput& input : inputs) {
     uint32_t vertices = input.first_vertex, plies = input.first_ply;
@@ -78,7 +83,7 @@ void LatticeTables::add_chart(const LatticeInput& input, const LatticeChart& cha
     for (int k = 0; k < 3; ++k) lattice_.push_back(float(lattice.position[i][k] - origin[k]));
     for (int k = 0; k < 3; ++k) lattice_.push_back(float(lattice.normal[i][k]));
   }
-  const uint32_t n = uint32_t(chart.tile.plies), most = W_LEAF_LANES / n;
+  const uint32_t n = uint32_t(chart.tile.plies);
   std::vector<Entry> at_ends;
   for (size_t y = 0; y < chart.tile.yarns.size(); ++y) {
     const TileYarn& yarn = chart.tile.yarns[y];
@@ -102,7 +107,7 @@ void LatticeTables::add_chart(const LatticeInput& input, const LatticeChart& cha
     vertices += lines * n * run.count;
     plies += lines * n;
     // As even as can be: a short rest would leave lanes empty.
-    const uint32_t patches = (yarn.samples + most - 1) / most;
+    const uint32_t patches = patches_of(yarn, n);
     for (uint32_t i = 0; i < patches; ++i) {
       const uint32_t first = i * yarn.samples / patches, last = (i + 1) * yarn.samples / patches;
       const bool starts = open && i == 0, ends = open && i + 1 == patches;

@@ -25,6 +25,9 @@ struct StoredRun {
   uint32_t vertices = 0;
 };
 
+/// Leaves of one pass of a yarn of `plies` through its tile.
+uint32_t patches_of(const TileYarn& yarn, uint32_t plies);
+
 /// Device form of lattices and their tiles (W_PATCH_*, WTileVertex, W_LATTICE_WORDS of kernels/shared/wale_types.h).
 class LatticeTables {
  public:

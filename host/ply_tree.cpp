@@ -36,6 +36,20 @@ void write_header(const PlyPatch& patch, uint32_t* leaf) {
       (open && patch.first == 0 ? 1u : 0u) | (open && patch.first + patch.intervals + 1 == patch.count ? 2u : 0u);
 }
 
+// Leaf by leaf in pieces, so that the host never holds all leaves.
+void write_headers(const Device& device, std::span<const PlyPatch> patches, const PlyTree& tree) {
+  constexpr size_t kPiece = 1u << 14;
+  std::vector<uint32_t> words;
+  for (size_t first = 0; first < patches.size(); first += kPiece) {
+    const size_t last = std::min(first + kPiece, patches.size()), begin = size_t(tree.leaf_offset[first]) * 4;
+    const PlyPatch& end = patches[last - 1];
+    words.assign(size_t(tree.leaf_offset[last - 1]) * 4 + W_LEAF_HEADER + 3 * leaf_stride(end) - begin, 0);
+    for (size_t i = first; i < last; ++i)
+      write_header(patches[i], words.data() + size_t(tree.leaf_offset[i]) * 4 - begin);
+    device.queue().enqueueWriteBuffer(tree.leaves.cl(), CL_TRUE, begin * 4, words.size() * 4, words.data());
+  }
+}
+
 void refuse_if_too_far(const PlyPatch& patch, const Box& box) {
   for (int k = 0; k < 3; ++k)
     if (!(box.lo[k] >= -kLargestCoordinate && box.hi[k] <= kLargestCoordinate && patch.radius <= kLargestCoordinate))
@@ -47,8 +61,10 @@ void refuse_if_too_far(const PlyPatch& patch, const Box& box) {
 
 }  // namespace
 
-PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, const Buffer<float>& vertices,
-                       std::span<const Box> group_box, ProceduralLeaves procedural) {
+PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, const Buffer<float>& positions,
+                       std::span<const Box> group_box, bool updatable, ProceduralLeaves procedural) {
+  if (updatable && !group_box.empty()) bug("ply tree: a tree of cells cannot be refitted");
+  if (updatable && !procedural.number.empty()) bug("ply tree: procedural leaves cannot be refitted");
   PlyTree tree;
   const double start = now();
   size_t words = 0;
@@ -66,21 +82,23 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
     device_error("ply tree: leaves of {} MB do not fit one buffer of {}; use fewer repeats", words * 4 >> 20,
                  device.traits().name);
   words += kTail;
-  std::vector<uint32_t> headers(words, 0), run_of(4 * patches.size());
-  for (size_t i = 0; i < patches.size(); ++i) {
-    write_header(patches[i], headers.data() + size_t(tree.leaf_offset[i]) * 4);
-    const uint32_t run[] = {tree.leaf_offset[i], patches[i].first_vertex, patches[i].count, patches[i].ghost_ends};
-    std::copy_n(run, 4, run_of.begin() + 4 * i);
-  }
-  tree.leaves = Buffer<uint32_t>(device, headers);
+  tree.leaves = Buffer<uint32_t>(device, words);
+  tree.leaves.fill(device, 0);
+  std::vector<uint32_t> run_of;
+  run_of.reserve(4 * patches.size());
+  for (size_t i = 0; i < patches.size(); ++i)
+    run_of.insert(run_of.end(),
+                  {tree.leaf_offset[i], patches[i].first_vertex, patches[i].count, patches[i].ghost_ends});
+  write_headers(device, patches, tree);
   std::vector<Box> boxes = std::move(procedural.box);
   boxes.insert(boxes.begin(), patches.size(), Box{});
+  const Buffer<uint32_t> runs(device, run_of);
+  run_of = {};
   if (!patches.empty()) {
-    const Buffer<uint32_t> runs(device, run_of);
-    Buffer<float> box_buffer(device, 6 * patches.size());
+    const Buffer<float> box_buffer(device, 6 * patches.size());
     cl::Kernel pack(build_program(device, "pack.cl"), "pack_leaves");
     pack.setArg(0, runs.cl());
-    pack.setArg(1, vertices.cl());
+    pack.setArg(1, positions.cl());
     pack.setArg(2, tree.leaves.cl());
     pack.setArg(3, box_buffer.cl());
     pack.setArg(4, uint32_t(patches.size()));
@@ -102,9 +120,30 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
     for (const PlyPatch& patch : patches) cells.push_back(patch.cell);
   const WideTree wide = build_wide_tree(boxes, tree.leaf_offset, cells, group_box);
   tree.nodes = Buffer<uint32_t>(device, wide.words);
-  tree.node_cell = Buffer<uint32_t>(device, wide.node_cell);
+  tree.node_cell = Buffer<uint32_t>(device, group_box.empty() ? std::vector<uint32_t>{} : wide.node_cell);
+  if (updatable) tree.refit = std::make_unique<PlyRefit>(device, runs, positions, tree.leaf_offset, wide, tree);
   tree.build_seconds = now() - start - tree.pack_seconds;
   return tree;
+}
+
+void refit(const Device& device, PlyTree& tree) {
+  if (!tree.refit) bug("ply tree: not built to be updatable");
+  tree.refit->run(device);
+  uint32_t root[W_NODE_WORDS];
+  device.queue().enqueueReadBuffer(tree.nodes.cl(), CL_TRUE, 0, sizeof(root), root);
+  tree.bounds = Box{};
+  for (int k = 0; k < 3; ++k)
+    for (int slot = 0; slot < W_NODE_WIDTH; ++slot) {
+      if (root[96 + slot] == W_NONE) continue;
+      const float lo = std::bit_cast<float>(root[16 * k + slot]), hi = std::bit_cast<float>(root[48 + 16 * k + slot]);
+      if (!(lo >= -kLargestCoordinate && hi <= kLargestCoordinate))
+        user_error(
+            "fabric: moved, a ply reaches from {:.3g} to {:.3g} m; {:.0e} m from the middle of the scene is "
+            "the most that can be traced, in finite numbers",
+            lo, hi, kLargestCoordinate);
+      tree.bounds.lo[k] = std::min(tree.bounds.lo[k], lo);
+      tree.bounds.hi[k] = std::max(tree.bounds.hi[k], hi);
+    }
 }
 
 }  // namespace wale

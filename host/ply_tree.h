@@ -1,14 +1,16 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "geom/wide_tree.h"
 #include "host/device.h"
+#include "host/ply_refit.h"
 
 namespace wale {
 
-/// A patch of plies, in numbers of the device's vertex buffer; see W_LEAF_* in kernels/shared/wale_types.h.
+/// A patch of plies, in numbers of the device's vertices; see W_LEAF_* in kernels/shared/wale_types.h.
 struct PlyPatch {
   uint32_t first_vertex = 0;  ///< of the run's ply 0
   uint32_t count = 0;         ///< vertices per ply of the run
@@ -31,10 +33,12 @@ struct ProceduralLeaves {
 
 /// Leaves and tree over patches, on the device.
 struct PlyTree {
-  Buffer<uint32_t> leaves, nodes, node_cell;
+  Buffer<uint32_t> leaves, nodes;
+  Buffer<uint32_t> node_cell;         ///< for the cell stages only: see WideTree
   std::vector<uint32_t> leaf_offset;  ///< per patch, in 16-byte units; then the numbers of procedural leaves
   uint32_t root = 0xffffffffu;        ///< W_NONE when there is no patch
   Box bounds;
+  std::unique_ptr<PlyRefit> refit;  ///< of updatable trees
   double pack_seconds = 0, build_seconds = 0;
 
   /// Hit code of segment k (inside the patch) of ply p.
@@ -47,13 +51,19 @@ struct PlyTree {
 /// holds up to 7e12.
 constexpr float kLargestCoordinate = 1e12f;
 
-/// `procedural` leaves join the tree without being packed; they have no cells.
-/// Packs leaves on the device and builds the tree on the host. group_box: see build_wide_tree; when given, each UV cell
+/// Packs leaves on the device and builds the tree on the host. `positions`: x, y, z a vertex, metres; not needed
+/// afterwards. `procedural` leaves join the tree without being packed; they have no cells and cannot be refitted.
+/// group_box: see build_wide_tree; when given, each UV cell
 /// gets a node of its own (patches of one cell must follow one another in ascending order of cells), which the cell
 /// stages need. Without it the tree is free of cells: a fifth smaller and faster (bench/results/embree.md).
+/// `updatable`: keep what refit() needs, `positions` too.
 /// Throws a device error when a leaf buffer would not fit, and a user error when a ply reaches farther out than
 /// kLargestCoordinate, or has a vertex or radius that is no number.
-PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, const Buffer<float>& vertices,
-                       std::span<const Box> group_box = {}, ProceduralLeaves procedural = {});
+PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, const Buffer<float>& positions,
+                       std::span<const Box> group_box = {}, bool updatable = false, ProceduralLeaves procedural = {});
+
+/// Lets an updatable tree, free of cells, follow what the buffer of positions that it was built from holds now; nothing
+/// is allocated. Waits for the device. Throws a user error when a ply reaches farther out than kLargestCoordinate.
+void refit(const Device& device, PlyTree& tree);
 
 }  // namespace wale

@@ -50,7 +50,7 @@ Json fabric_json(const Fabric& f, const MeshReport& mesh) {
       {"mirrored", f.report.mirrored},
       {"patches", f.patches.size()},
       {"cells", f.cell_triangles.offset.empty() ? 0 : f.cell_triangles.offset.size() - 1},
-      {"vertex_bytes", f.report.vertices * W_VERTEX_WORDS * 4},
+      {"vertex_bytes", f.report.vertices * W_FRAME_WORDS * 4},
   };
 }
 
@@ -111,7 +111,7 @@ std::string build_report_text(const World& world, const std::vector<TextileMeasu
                          100 * (1 - t.cover));
     }
     out += fmt::format("  knitted    {} full yarns, {} runs, {} segments, {} vertices ({} bytes each)\n", r.full_yarns,
-                       r.runs, r.segments, r.vertices, W_VERTEX_WORDS * 4);
+                       r.runs, r.segments, r.vertices, W_FRAME_WORDS * 4);
     if (r.fibres > r.flyaways)
       out += fmt::format("  fibres     {} curves of radius {:.4f} mm\n", r.fibres - r.flyaways, 1e3 * f.fibre_radius);
     if (r.flyaways)

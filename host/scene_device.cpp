@@ -30,7 +30,9 @@ std::vector<float> corners_of(const std::vector<float>& triangles) {
   return out;
 }
 
-std::vector<FabricInput> inputs_of(const World& world) {
+}  // namespace
+
+std::vector<FabricInput> fabric_inputs(const World& world) {
   std::vector<FabricInput> inputs;
   for (size_t i = 0; i < world.fabrics.size(); ++i)
     inputs.push_back({&world.fabrics[i], world.fabric_material[i], world.ply_materials[world.fabric_material[i]].tau_e,
@@ -40,10 +42,8 @@ std::vector<FabricInput> inputs_of(const World& world) {
 
 FabricDevice upload(const Device& device, const World& world, LocalStage stage) {
   const DriverCall guard;
-  return upload_fabrics(device, inputs_of(world), world.origin, stage);
+  return upload_fabrics(device, fabric_inputs(world), world.origin, stage);
 }
-
-}  // namespace
 
 SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage stage)
     : device_(device),
@@ -127,19 +127,19 @@ cl_uint SceneDevice::bind_lights(cl::Kernel& kernel, cl_uint first) const {
 }
 
 std::map<std::string, uint64_t> SceneDevice::bytes() const {
-  return {{"ply vertices", fabric_.vertices.bytes()},
-          {"ply leaves", fabric_.tree.leaves.bytes()},
+  const uint64_t frames = fabric_.frames.bytes(), leaves = fabric_.tree.leaves.bytes();
+  const uint64_t tree = fabric_.tree.nodes.bytes() + fabric_.tree.node_cell.bytes();
+  return {{"ply vertices", frames},
+          {"ply leaves", leaves},
           {"lattices", fabric_.lattice.bytes()},
-          {"ply tree", fabric_.tree.nodes.bytes() + fabric_.tree.node_cell.bytes()},
+          {"ply tree", tree},
           {"triangles", triangles_.bytes() + tri_leaves_.bytes() + tri_nodes_.bytes()},
           {"environment", env_texels_.bytes() + env_cdf_.bytes()},
           {"lights", lights_.bytes() + light_cdf_.bytes() + light_triangles_.bytes()},
           {"fibre detail", fibre_details_.bytes() + fibre_offsets_.bytes() + fibre_candidates_.bytes()},
           {"materials", ply_materials_.bytes() + fibre_materials_.bytes() + surface_materials_.bytes()},
           {"ply colours", ply_colors_.bytes()},
-          {"UV cells", stage_ == LocalStage::exact
-                           ? 0
-                           : fabric_.cell_triangles.bytes() + fabric_.cell_segments.bytes() + fabric_.base_uv.bytes()}};
+          {"UV cells", fabric_.bytes - frames - leaves - tree}};
 }
 
 }  // namespace wale

@@ -7,6 +7,9 @@
 
 namespace wale {
 
+/// The world's fabrics and what they are made of.
+std::vector<FabricInput> fabric_inputs(const World& world);
+
 /// A world on the device: buffers and the order in which kernels take them (stages/scene_args.clh, light_args.clh).
 class SceneDevice {
  public:
@@ -17,7 +20,7 @@ class SceneDevice {
   cl_uint bind_scene(cl::Kernel& kernel, cl_uint first) const;
   cl_uint bind_lights(cl::Kernel& kernel, cl_uint first) const;
 
-  const cl::Buffer& vertices() const { return fabric_.vertices.cl(); }
+  const cl::Buffer& frames() const { return fabric_.frames.cl(); }
   const cl::Buffer& ply_materials() const { return ply_materials_.cl(); }
   const cl::Buffer& fibre_details() const { return fibre_details_.cl(); }
   const cl::Buffer& fibre_offsets() const { return fibre_offsets_.cl(); }

@@ -15,7 +15,7 @@ namespace {
 //   compact        a slot of a list   twice list and mask                         list
 //   miss           a path that left   list, ray direction, weight, radiance       mask, radiance
 //   shade_ply      a hit              list, ray 3, hit, barycentrics, weight,     mask, ray 3, weight, shadow ray 3
-//                                     leaf header, 4 points, 2 vertices           and colour
+//                                     leaf header, 4 points, 2 frames             and colour
 //   shade_fibre    a hit              the same                                    the same
 //   shade_surface  a hit              list, ray 3, hit, barycentrics, weight,     mask, ray 3, weight, radiance,
 //                                     radiance, triangle                          shadow ray 3 and colour
@@ -24,7 +24,7 @@ namespace {
 //   accumulate_aov a path             4 features, 4 pixel sums                    4 pixel sums
 constexpr double kWord = 4, kVec = 16, kRay = 3 * kVec, kUv = 8;
 constexpr double kShadowRay = kRay + kVec;
-constexpr double kLeafPart = W_LEAF_HEADER * kWord + 4 * 3 * kWord + 2 * W_VERTEX_WORDS * kWord;
+constexpr double kLeafPart = W_LEAF_HEADER * kWord + 4 * 3 * kWord + 2 * W_FRAME_WORDS * kWord;
 constexpr double kTriangle = 20 * kWord;
 
 // Additions and multiplications of one hit with one light sample, as `oclgrind --inst-counts` counts them (a dot
@@ -34,15 +34,24 @@ constexpr double kShadePlyOperations = 1000 + 39 * 20;
 }  // namespace
 
 std::vector<Stage> geometry_stages(const Features& f) {
-  const bool curves = f.plies || f.fibres;
   return {{.file = "warp.cl",
            .kernels = {"warp_points", "warp_normals"},
-           .used = curves,
+           .used = f.mesh_warp,
            .because = "plies on the base mesh",
+           .before_rays = true},
+          {.file = "lattice_vertices.cl",
+           .kernels = {"lattice_points", "lattice_normals"},
+           .used = f.stored_lattice,
+           .because = "plies of a lattice, stored",
+           .before_rays = true},
+          {.file = "lattice_boxes.cl",
+           .kernels = {"lattice_boxes"},
+           .used = f.procedural,
+           .because = "bounds of procedural leaves",
            .before_rays = true},
           {.file = "pack.cl",
            .kernels = {"pack_leaves"},
-           .used = curves,
+           .used = f.mesh_warp || f.stored_lattice,
            .because = "leaves and bounds",
            .before_rays = true}};
 }

@@ -135,11 +135,11 @@ class Builder {
     fabric.place = {};
   }
 
-  // A segment takes 28 bytes as stored vertex and about 25 in leaves and nodes on the device, and as much again for
-  // its anchor; the host holds it once more while it knits.
+  // A segment takes 16 bytes of frame and about 25 in leaves and nodes on the device, and 12 of position and 32 of
+  // anchor until its leaf is packed; the host holds it once more while it knits.
   static void refuse_if_too_large(const BaseMesh& mesh, const Pattern& pattern, const FabricSpec& spec) {
     // A procedural one keeps a few bytes; its boxes and its tree take some forty while they are built.
-    const double bytes = spec.storage == Storage::procedural ? 48 : 28 + 25 + 32 + 160;
+    const double bytes = spec.storage == Storage::procedural ? 48 : 16 + 25 + 12 + 32 + 160;
     const double segments = double(estimate_segments(mesh, pattern, spec));
     const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
     if (segments * bytes > 0.8 * memory)

@@ -29,23 +29,25 @@ static Place place_of(uint i, __global const float* lattice, __global const uint
   return place;
 }
 
-/* Position and length of every vertex. */
+/* Writes where every vertex lies: x, y, z. */
 __kernel void lattice_points(__global const float* lattice, __global const uint* tiles, WLatticeRun run,
-                             __global float* vertices, uint items) {
+                             __global float* points, __global float4* frames, uint items) {
   const uint i = get_global_id(0);
   if (i >= items) return;
   const Place place = place_of(i, lattice, tiles, run);
-  __global float* v = vertices + (size_t)place.vertex * W_VERTEX_WORDS;
-  vstore3(w_tile_point(place.tile, place.corner), 0, v);
-  v[6] = w_tile_length(place.tile, place.along, run.first_ply + place.line * run.plies, place.ply, run.radius);
+  vstore3(w_tile_point(place.tile, place.corner), place.vertex, points);
 }
 
-/* Frames; needs every vertex's position. */
+/* Frames and lengths; needs every vertex's position. */
 __kernel void lattice_normals(__global const float* lattice, __global const uint* tiles, WLatticeRun run,
-                              __global float* vertices, uint items) {
+                              __global const float* points, __global float4* frames, uint items) {
   const uint i = get_global_id(0);
   if (i >= items) return;
   const Place place = place_of(i, lattice, tiles, run);
-  const uint flag = (place.at == 0 ? 1u : 0u) | (place.at + 1 == (int)run.count ? 2u : 0u);
-  w_store_frame(vertices + (size_t)place.vertex * W_VERTEX_WORDS, w_tile_normal(place.tile, place.corner), flag);
+  const size_t here = place.vertex;
+  const size_t before = place.at == 0 ? here : here - 1, after = place.at + 1 == (int)run.count ? here : here + 1;
+  const float3 normal = w_one_vertex_frame(w_tile_normal(place.tile, place.corner), w_load3(before, points),
+                                     w_load3(here, points), w_load3(after, points));
+  frames[here] = (float4)(
+      normal, w_tile_length(place.tile, place.along, run.first_ply + place.line * run.plies, place.ply, run.radius));
 }

@@ -1,14 +1,16 @@
-/* Leaves and boxes of patches from warped vertices: what runs after the warp and after every change of the base mesh. */
+/* Leaves and boxes of patches from warped points: what runs after the warp and after every change of the base mesh. A
+   work-item packs one patch, W_LANES of its points at a time; point (j, p) of ply p stands at index j*n + p of arrays,
+   j = 0 being the vertex two before the patch's first. */
 #include "geometry/joint.clh"
 #include "shared/wale_types.h"
 
-/* One ply of a run: `vertices` of its W_VERTEX_WORDS words each, `count` of them. */
+/* One ply of a run: its vertices, `count` of them. */
 typedef struct Ply {
-  __global const float* vertices;
+  __global const float* vertices; /* x, y, z */
   int count, ghosts;
 } Ply;
 
-W_INLINE float3 stored(const Ply* ply, int i) { return vload3(0, ply->vertices + (long)i * W_VERTEX_WORDS); }
+W_INLINE float3 stored(const Ply* ply, int i) { return vload3((size_t)i, ply->vertices); }
 
 /* Vertex i of the ply. Open ends repeat the end vertex; closed yarns go on round: their samples 0 and count - 3 are the
    same, displaced, so that both sides of the join see the same neighbours and decide alike. */
@@ -20,77 +22,86 @@ W_INLINE float3 vertex(const Ply* ply, int i) {
                : stored(ply, 3) + (stored(ply, last) - stored(ply, 2));
 }
 
-/* What lies at vertex v: its two unit edges and whether it gets a square cut and a sphere. The decision looks at v - 2
-   to v + 2 only, so that every leaf that meets the joint takes the same. */
-typedef struct Joint {
-  float3 before, after;
-  int cut;
-} Joint;
+/* run: leaf offset (16-byte units), first vertex of the run's ply 0, vertices per ply, 1 if the run has ghost ends. The
+   host has written the leaf's header but for CUTS and SPHERES. Returns the leaf's box. What happens at a joint follows
+   from the vertices two before to two after it only, so that every leaf that meets the joint decides alike. */
+W_INLINE Bounds pack_leaf(uint4 run, __global const float* positions, __global uint* leaves) {
+  __global uint* leaf = leaves + ((size_t)run.x << 2);
+  const uint layout = leaf[W_LEAF_LAYOUT], n = layout & 255u, lanes = (layout >> 8) & 255u, stride = layout >> 16;
+  const int intervals = (int)(lanes / n), first = (int)(leaf[W_LEAF_SEGMENT] - run.y);
+  const w_vf r = w_all(as_float(leaf[W_LEAF_RADIUS]));
+  Points point;
+  clear_points(&point);
+  for (uint p = 0; p < n; ++p) {
+    Ply ply;
+    ply.vertices = positions + ((size_t)run.y + (size_t)p * run.z) * 3;
+    ply.count = (int)run.z;
+    ply.ghosts = (int)run.w;
+    const int inside = first >= 2 && first + intervals + 2 < ply.count;
+    for (int j = 0; j < intervals + 5; ++j) {
+      const float3 x = inside ? stored(&ply, first - 2 + j) : vertex(&ply, first - 2 + j);
+      const uint at = (uint)j * n + p;
+      point.x[at] = x.x;
+      point.y[at] = x.y;
+      point.z[at] = x.z;
+    }
+  }
+  __global float* out = (__global float*)(leaf + W_LEAF_HEADER);
+  for (uint at = 0; at < stride; at += 4) {
+    vstore4(vload4(0, point.x + n + at), 0, out + at);
+    vstore4(vload4(0, point.y + n + at), 0, out + stride + at);
+    vstore4(vload4(0, point.z + n + at), 0, out + 2 * stride + at);
+  }
 
-W_INLINE Joint joint_at(const Ply* ply, int v, float r) {
-  const float3 a = vertex(ply, v - 2), b = vertex(ply, v - 1), c = vertex(ply, v), d = vertex(ply, v + 1);
-  const float3 e = vertex(ply, v + 2);
-  const float3 t0 = unit_edge(b - a, r), t1 = unit_edge(c - b, r), t2 = unit_edge(d - c, r), t3 = unit_edge(e - d, r);
-  Joint joint;
-  joint.before = t1;
-  joint.after = t2;
-  joint.cut = !ply->ghosts && (v == 0 || v == ply->count - 1);
-  joint.cut |= dot(t1, t2) < W_MITRE_COS || bad_segment(c - b, t0, t1, t2, r) || bad_segment(d - c, t1, t2, t3, r);
-  return joint;
+  uint cut_joints;
+  const int open_start = !run.w && first == 0, open_end = !run.w && first + intervals == (int)run.z - 1;
+  const Bounds box =
+      bound_joints(&point, n, lanes, r, (open_start ? 1u : 0u) | (open_end ? 2u : 0u), &cut_joints);
+  const uint segments = (1u << lanes) - 1u;
+  leaf[W_LEAF_CUTS] = (cut_joints & segments) | (cut_joints >> n & segments) << 16;
+  leaf[W_LEAF_SPHERES] =
+      (cut_joints & segments) | (open_end ? cut_joints >> lanes << (16 + lanes - n) : 0u);
+  return box;
 }
 
-/* patches: uint4 each: leaf offset (16-byte units), first vertex of the run's ply 0, vertices per ply, 1 if the run has
-   ghost ends. The host has written the leaf's header but for CUTS and SPHERES, and zeros elsewhere.
-   boxes: lo x,y,z, hi x,y,z. */
-__kernel void pack_leaves(__global const uint4* patches, __global const float* vertices, __global uint* leaves,
+/* boxes: lo x,y,z, hi x,y,z. */
+__kernel void pack_leaves(__global const uint4* runs, __global const float* positions, __global uint* leaves,
                           __global float* boxes, uint count) {
   const uint i = get_global_id(0);
   if (i >= count) return;
-  const uint4 patch = patches[i];
-  __global uint* leaf = leaves + ((size_t)patch.x << 2);
-  const uint layout = leaf[W_LEAF_LAYOUT], n = layout & 255u, lanes = (layout >> 8) & 255u, stride = layout >> 16;
-  const int intervals = (int)(lanes / n), first = (int)(leaf[W_LEAF_SEGMENT] - patch.y);
-  const float r = as_float(leaf[W_LEAF_RADIUS]);
-  __global float* points = (__global float*)(leaf + W_LEAF_HEADER);
-  uint cuts = 0, spheres = 0;
-  float3 lo = (float3)(1e30f), hi = (float3)(-1e30f);
-  for (uint p = 0; p < n; ++p) {
-    Ply ply;
-    ply.vertices = vertices + ((size_t)patch.y + (size_t)p * patch.z) * W_VERTEX_WORDS;
-    ply.count = (int)patch.z;
-    ply.ghosts = (int)patch.w;
-    for (int k = 0; k <= intervals + 2; ++k) {
-      const float3 x = vertex(&ply, first + k - 1);
-      points[k * n + p] = x.x;
-      points[stride + k * n + p] = x.y;
-      points[2 * stride + k * n + p] = x.z;
-    }
-    const int last_traced = ply.ghosts ? ply.count - 2 : ply.count - 1; /* vertex where the run's tracing ends */
-    for (int k = 0; k <= intervals; ++k) {
-      const int v = first + k;
-      const Joint joint = joint_at(&ply, v, r);
-      const float3 c = vertex(&ply, v);
-      /* The segment that starts at a joint owns its sphere; the last one of an open ply owns the end cap. */
-      const int owned = joint.cut && (k < intervals || (!ply.ghosts && v == last_traced));
-      if (joint.cut) {
-        if (k < intervals) cuts |= 1u << (k * n + p);
-        if (k > 0) cuts |= 1u << (16 + (k - 1) * n + p);
-        if (owned) spheres |= k < intervals ? 1u << (k * n + p) : 1u << (16 + (k - 1) * n + p);
-      }
-      float3 extent;
-      if (owned)
-        extent = (float3)(r);
-      else if (joint.cut)
-        extent = disc_extent(joint.before, r);
-      else
-        extent = mitre_extent(joint.before, joint.after, r);
-      extent += 4e-5f * r; /* the seam's overlap (W_MITRE_EPS) and rounding */
-      lo = fmin(lo, c - extent);
-      hi = fmax(hi, c + extent);
-    }
+  const Bounds box = pack_leaf(runs[i], positions, leaves);
+  vstore3(box.lo, 2 * (size_t)i, boxes);
+  vstore3(box.hi, 2 * (size_t)i + 1, boxes);
+}
+
+/* Packs again and writes each leaf's box where the tree holds it: places are 16 * node + slot. Widened as by
+   build_wide_tree. */
+__kernel void refit_leaves(__global const uint4* runs, __global const float* positions, __global uint* leaves,
+                           __global const uint* places, __global float* nodes, uint count) {
+  const uint i = get_global_id(0);
+  if (i >= count) return;
+  const Bounds box = pack_leaf(runs[i], positions, leaves);
+  const float3 lo = box.lo - (fabs(box.lo) * 4.8e-7f + 1e-30f), hi = box.hi + (fabs(box.hi) * 4.8e-7f + 1e-30f);
+  __global float* f = nodes + (size_t)(places[i] / W_NODE_WIDTH) * W_NODE_WORDS + places[i] % W_NODE_WIDTH;
+  f[0] = lo.x;
+  f[16] = lo.y;
+  f[32] = lo.z;
+  f[48] = hi.x;
+  f[64] = hi.y;
+  f[80] = hi.z;
+}
+
+/* Nodes [first, first + count) of one level write their bounds where their parents hold them; below them all is done.
+   Empty children do not count: their boxes are inside out. */
+__kernel void refit_nodes(__global const uint* parents, __global float* nodes, uint first, uint count) {
+  const uint i = get_global_id(0);
+  if (i >= count) return;
+  __global const float* f = nodes + (size_t)(first + i) * W_NODE_WORDS;
+  const uint place = parents[first + i];
+  __global float* out = nodes + (size_t)(place / W_NODE_WIDTH) * W_NODE_WORDS + place % W_NODE_WIDTH;
+  for (uint side = 0; side < 6; ++side, f += W_NODE_WIDTH, out += W_NODE_WIDTH) {
+    float m = f[0];
+    for (uint slot = 1; slot < W_NODE_WIDTH; ++slot) m = side < 3 ? fmin(m, f[slot]) : fmax(m, f[slot]);
+    *out = m;
   }
-  leaf[W_LEAF_CUTS] = cuts;
-  leaf[W_LEAF_SPHERES] = spheres;
-  vstore3(lo, 2 * i, boxes);
-  vstore3(hi, 2 * i + 1, boxes);
 }

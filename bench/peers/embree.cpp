@@ -42,7 +42,7 @@ class Peer {
         nullptr);
     scene_ = rtcNewScene(device_);
     rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
-    const size_t vertices = cloth.vertices.size() / W_VERTEX_WORDS, segments = cloth.segments();
+    const size_t vertices = cloth.positions.size() / 3, segments = cloth.segments();
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
     auto* points = static_cast<float*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, vertices));
@@ -61,7 +61,7 @@ class Peer {
         }
     const float radius = cloth.patches.front().radius;
     for (size_t i = 0; i < vertices; ++i) {
-      std::copy_n(cloth.vertices.data() + i * W_VERTEX_WORDS, 3, points + 4 * i);
+      std::copy_n(cloth.positions.data() + 3 * i, 3, points + 4 * i);
       points[4 * i + 3] = radius;
     }
     rtcCommitGeometry(geometry);

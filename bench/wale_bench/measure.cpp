@@ -52,7 +52,7 @@ FabricResult measure(const Device& device, const Workload& workload, const Loade
   out.nodes = fabric.node_count;
   const double segments = double(std::max<size_t>(1, out.segments));
   out.trace_bytes = double(fabric.tree.leaves.bytes() + fabric.tree.nodes.bytes()) / segments;
-  out.shade_bytes = out.trace_bytes + double(fabric.vertices.bytes()) / segments;
+  out.shade_bytes = out.trace_bytes + double(fabric.frames.bytes()) / segments;
 
   IntegratorScene integrator = workload.scene.integrator;
   integrator.local_stage = "exact";

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "host/scene_device.h"
 #include "sampling/dimensions.clh"
 #include "tests/kernels/brute_force.h"
 
@@ -17,13 +18,13 @@ constexpr double kSameRelative = 1e-6;  // of the distance
 
 // The ray's line comes near the vertices of a patch and of the segments beside it. Mitres reach no farther than a
 // segment's own length.
-bool near_patch(const PlyPatch& patch, const std::vector<float>& vertices, const std::vector<CheckedRay>& rays) {
+bool near_patch(const PlyPatch& patch, const std::vector<float>& positions, const std::vector<CheckedRay>& rays) {
   dvec3 lo(1e300), hi(-1e300);
   const uint32_t first = patch.first > 0 ? patch.first - 1 : 0;
   const uint32_t last = std::min(patch.first + patch.intervals + 1, patch.count - 1);
   for (uint32_t p = 0; p < patch.plies; ++p)
     for (uint32_t k = first; k <= last; ++k) {
-      const float* v = &vertices[(size_t(patch.first_vertex) + size_t(p) * patch.count + k) * W_VERTEX_WORDS];
+      const float* v = &positions[(size_t(patch.first_vertex) + size_t(p) * patch.count + k) * 3];
       lo = glm::min(lo, dvec3(v[0], v[1], v[2]));
       hi = glm::max(hi, dvec3(v[0], v[1], v[2]));
     }
@@ -49,7 +50,7 @@ bool same_place(const test::BruteForce& brute, uint32_t segment, uint32_t other)
 Oracle::Oracle(const Device& device, const World& world, const FabricDevice& fabric, bool opaque)
     : fabric_(fabric),
       props_(world.triangle_count() > 0 || !world.spheres.empty()),
-      vertices_(fabric.vertices.read(device)) {
+      positions_(FabricWarp(device, fabric_inputs(world), world.origin).points().read(device)) {
   for (uint32_t f = 0; f < world.fabrics.size(); ++f)
     for (const Patch& p : world.fabrics[f].patches) {
       const PlyRun& run = world.fabrics[f].runs[p.run];
@@ -96,8 +97,8 @@ std::vector<CheckedRay> Oracle::sample(const RayBatch& batch, const std::vector<
 Agreement Oracle::check(const std::vector<CheckedRay>& rays) const {
   std::vector<PlyPatch> close;
   for (const PlyPatch& patch : patches_)
-    if (near_patch(patch, vertices_, rays)) close.push_back(patch);
-  const test::BruteForce brute(close, vertices_);
+    if (near_patch(patch, positions_, rays)) close.push_back(patch);
+  const test::BruteForce brute(close, positions_);
   Agreement out;
   for (const CheckedRay& c : rays) {
     const test::OracleHit truth = brute.closest(c.ray, c.skip);

@@ -43,7 +43,7 @@ class Oracle {
 
   const FabricDevice& fabric_;
   bool props_;
-  std::vector<float> vertices_;
+  std::vector<float> positions_;  // x, y, z a vertex
   std::vector<PlyPatch> patches_;
 };
 

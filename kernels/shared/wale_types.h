@@ -96,11 +96,12 @@ typedef struct WLatticeRun {
   w_uint pad0, pad1;
 } WLatticeRun;
 
-/* --- stored ply vertex: 7 floats, 28 bytes: position, frame normal, rest length along the full ply -----------------
+/* --- what a ply vertex keeps for shading: frame normal (unit) and rest length along the full ply, 4 floats, 16 bytes;
+   where it lies is in the leaves. ------------------------------------------------------------------------------------
    The length starts anywhere (a hash of the ply, so that neighbours do not look alike) and wraps at W_LENGTH_PERIOD ply
    radii: a float then keeps the phase of the fibres to 1e-3 rad on any length of yarn. All that winds along a ply does so
    a whole number of times in one period (appearance/fibre_phase.clh). */
-#define W_VERTEX_WORDS 7
+#define W_FRAME_WORDS 4
 #define W_LENGTH_PERIOD 4096.0f
 
 /* Colour of the segment that starts at a vertex, where colours vary: 10 bits q a channel from the lowest up,

@@ -14,7 +14,7 @@
 #include "stages/scene_args.clh"
 #include "stages/store_rays.clh"
 
-__kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PARAMS, __global const float* vertices,
+__kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PARAMS, __global const float* frames,
                           __global const WFibreMaterial* materials,
 #ifdef W_HAS_PLY_COLORS
                           __global const uint* colors,
@@ -32,7 +32,7 @@ __kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_P
 
   const WRay ray = w_slot_ray(ray_o, ray_l, ray_d, slot);
   const WHit h = w_slot_hit(hit, hit_uv, slot);
-  const WPlySurface s = w_ply_surface(&scene, vertices, &ray, &h);
+  const WPlySurface s = w_ply_surface(&scene, frames, &ray, &h);
   WFibreMaterial material = materials[s.material & ~W_MATERIAL_FIBRE];
 #ifdef W_HAS_PLY_COLORS
   if (colors[s.segment] & W_COLOR_GIVEN)

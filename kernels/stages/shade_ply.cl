@@ -27,7 +27,7 @@ static inline float3 w_leave(const WPlySurface* s, float3 out, float3 middle, fl
 #define W_COLORED(material, segment) material
 #endif
 
-__kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PARAMS, __global const float* vertices,
+__kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PARAMS, __global const float* frames,
                         __global const WPlyMaterial* materials,
 #ifdef W_HAS_DETAIL
                         __global const WFibreDetail* details, __global const uint* fibre_offsets,
@@ -49,7 +49,7 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
 
   const WRay ray = w_slot_ray(ray_o, ray_l, ray_d, slot);
   const WHit h = w_slot_hit(hit, hit_uv, slot);
-  const WPlySurface s = w_ply_surface(&scene, vertices, &ray, &h);
+  const WPlySurface s = w_ply_surface(&scene, frames, &ray, &h);
   const float3 wv = -ray.d;
   const WPlyMaterial material = W_COLORED(materials[s.material], s.segment);
   WFibreAt fibre = w_fibre_mean(material.tilt);

@@ -39,9 +39,9 @@ constexpr double kClearH = 0.99, kClearEdge = 1e-4, kClearStart = 1e-4;  // radi
 /// Position of the hit relative to the start of its segment, against the piece's true surface and the ray.
 template <typename Real>
 real place_error(const Strands& strands, const Ray& ray, const HitOf<Real>& hit, const SurfaceOf<Real>& s) {
-  const float* vertex = strands.vertices.data() + size_t(s.segment) * W_VERTEX_WORDS;
+  const float* vertex = strands.positions.data() + size_t(s.segment) * 3;
   const real radius = strands.patches[0].radius;
-  const Vec start(vertex), end(vertex + W_VERTEX_WORDS), x(s.x), e = end - start, d(ray.d);
+  const Vec start(vertex), end(vertex + 3), x(s.x), e = end - start, d(ray.d);
   const Vec from = Vec(ray.o) + Vec(ray.l) - start;
   const real surface = int(hit.v) == kSide ? off_line(x, e) : length(int(hit.v) == kStart ? x : x - e);
   return std::max(std::abs(surface - radius), off_line(x - from, d)) / radius;
@@ -89,8 +89,8 @@ void compare(const RayCase& c, const std::vector<HitOf<Real>>& hits, const std::
     const double dt = double(std::abs(h.t - e.exact_t)) / radius;
     if (clear && dt > 1e-2 + 64 * rounding) wrong("another hit");
     // Steep: where the surface's error does not grow along the ray by more than a factor of 8.
-    const float* vertex = c.strands.vertices.data() + size_t(s.segment) * W_VERTEX_WORDS;
-    const Vec edge = Vec(vertex + W_VERTEX_WORDS) - Vec(vertex);
+    const float* vertex = c.strands.positions.data() + size_t(s.segment) * 3;
+    const Vec edge = Vec(vertex + 3) - Vec(vertex);
     const bool steep = int(h.v) != kSide || off_line(edge, Vec(c.rays[i].d)) > 0.3L * length(edge);
     if (clear && steep && s.segment == e.segment && int(h.v) == e.piece && std::abs(e.h) < 0.9)
       error = std::max(error, dt - 2 * rounding);
@@ -117,7 +117,7 @@ Finding look_at_rays(const std::vector<RayCase>& cases) {
   if (fp64) f.error_double = 0;
   for (const RayCase& c : cases) {
     Tracer tracer(test_device(), c.strands);
-    const BruteForce oracle(c.strands.patches, c.strands.vertices);
+    const BruteForce oracle(c.strands.patches, c.strands.positions);
     std::vector<OracleHit> expected;
     for (const Ray& ray : c.rays)
       expected.push_back(oracle.closest(ray, ray.skip == W_NONE ? -1 : long(tracer.segment(ray.skip))));

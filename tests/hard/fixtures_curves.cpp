@@ -120,7 +120,7 @@ Strands strands_of(const HardCurve& curve, double scale, dvec3 offset) {
 }
 
 dvec3 vertex_of(const Strands& strands, size_t vertex) {
-  const float* v = strands.vertices.data() + vertex * W_VERTEX_WORDS;
+  const float* v = strands.positions.data() + vertex * 3;
   return {v[0], v[1], v[2]};
 }
 

@@ -58,9 +58,9 @@ ConstantPicture cloth_inside(double radius, double view) {
 // Vertices of the scene's first fabric as the device places them, metres.
 std::vector<dvec3> ply_points(const Scene& scene) {
   const World world = build_world(scene, Loaders{[](const auto& file) { return read_mesh(file); }, {}});
-  const std::vector<float> words = FabricTracer(device(), world.fabrics[0]).vertices();
+  const std::vector<float> words = FabricTracer(device(), world.fabrics[0]).positions();
   std::vector<dvec3> points;
-  for (size_t i = 0; i < words.size(); i += W_VERTEX_WORDS) points.emplace_back(words[i], words[i + 1], words[i + 2]);
+  for (size_t i = 0; i < words.size(); i += 3) points.emplace_back(words[i], words[i + 1], words[i + 2]);
   return points;
 }
 

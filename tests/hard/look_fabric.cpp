@@ -29,7 +29,7 @@ void compare(Agreement& sum, const Fabric& fabric, const FabricTracer& tracer, c
 
 Agreement compare_with_brute_force(const Fabric& fabric, size_t rays) {
   const FabricTracer tracer(device(), fabric);
-  const BruteForce oracle(patches_of(fabric, -1), tracer.vertices());
+  const BruteForce oracle(patches_of(fabric, -1), tracer.positions());
   Agreement sum;
   const std::vector<Ray> primary = primary_rays(tracer.bounds(), rays, 3);
   const std::vector<Hit> first = tracer.trace(primary);

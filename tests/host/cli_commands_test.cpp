@@ -61,7 +61,7 @@ TEST_F(CliCommands, PlanListsWhatIsLeftOut) {
   EXPECT_TRUE(contains(options, "-DW_HAS_PLIES"));
   EXPECT_FALSE(contains(options, "W_HAS_TRIANGLES"));
   EXPECT_FALSE(contains(options, "W_HAS_SPHERES"));
-  EXPECT_GT(plan["buffers"]["ply vertices"].get<size_t>(), 28u * 1000u);
+  EXPECT_GT(plan["buffers"]["ply vertices"].get<size_t>(), 16u * 1000u);
 
   const std::string text = good({"plan", scene_});
   EXPECT_LT(text.find("simulated\n  plies "), text.find("left out\n  triangles "));

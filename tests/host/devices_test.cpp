@@ -175,7 +175,7 @@ TEST(MemoryNeeds, OneBufferThatIsTooLargeIsNamed) {
   const auto needs = memory_needs(world, Features{}, 64, traits);
   const std::string line = user_message([&] { require_memory(device, needs); });
   EXPECT_TRUE(contains(line, "holds at most 0.0 MB in one buffer, ply vertices would need 0.0 MB; use fewer repeats"));
-  traits.max_alloc_bytes = 1000 * W_VERTEX_WORDS * 4;
+  traits.max_alloc_bytes = 1000 * W_FRAME_WORDS * 4;
   require_memory(device, needs);
 }
 

@@ -42,7 +42,7 @@ struct Polyline {
 
 }  // namespace
 
-BruteForce::BruteForce(const std::vector<PlyPatch>& patches, const std::vector<float>& vertices) {
+BruteForce::BruteForce(const std::vector<PlyPatch>& patches, const std::vector<float>& positions) {
   for (const PlyPatch& patch : patches)
     for (uint32_t p = 0; p < patch.plies; ++p) {
       Polyline line;
@@ -50,7 +50,7 @@ BruteForce::BruteForce(const std::vector<PlyPatch>& patches, const std::vector<f
       line.r = patch.radius;
       const uint32_t first = patch.first_vertex + p * patch.count;
       for (uint32_t i = 0; i < patch.count; ++i) {
-        const float* v = vertices.data() + size_t(first + i) * W_VERTEX_WORDS;
+        const float* v = positions.data() + size_t(first + i) * 3;
         line.p.emplace_back(v[0], v[1], v[2]);
       }
       for (uint32_t k = 0; k < patch.intervals; ++k) {

@@ -24,8 +24,8 @@ struct OracleHit {
 
 class BruteForce {
  public:
-  /// `vertices` as in the device's vertex buffer (W_VERTEX_WORDS floats each).
-  BruteForce(const std::vector<PlyPatch>& patches, const std::vector<float>& vertices);
+  /// `positions`: x, y, z of every vertex.
+  BruteForce(const std::vector<PlyPatch>& patches, const std::vector<float>& positions);
   /// `skip` is the id of the segment that the ray starts on, or -1.
   OracleHit closest(const Ray& ray, long skip = -1) const;
   size_t segments() const { return segments_.size(); }

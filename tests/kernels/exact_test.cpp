@@ -105,7 +105,7 @@ void compare(Tally& tally, const Cloth& cloth, const Fabric& fabric, const Fabri
 void check(const Cloth& cloth, double segments, size_t rays, double most_rounded = 1e-5) {
   const Fabric fabric = knit(cloth, segments);
   const FabricTracer tracer(test_device(), fabric);
-  const BruteForce oracle(patches_of(fabric, -1), tracer.vertices());
+  const BruteForce oracle(patches_of(fabric, -1), tracer.positions());
   ASSERT_EQ(oracle.segments(), tracer.fabric().segment_count);
   EXPECT_GT(double(oracle.segments()), 0.7 * segments);
   std::vector<Ray> primary = primary_rays(tracer.bounds(), rays, 3);

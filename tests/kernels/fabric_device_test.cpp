@@ -23,27 +23,27 @@ Fabric knit(BaseMesh mesh) {
 
 void warp_agrees(const Fabric& fabric, dvec3 origin) {
   const FabricInput input{&fabric, 0, -1};
-  const FabricDevice device = upload_fabrics(test_device(), {&input, 1}, origin);
-  const std::vector<float> v = device.vertices.read(test_device());
-  ASSERT_EQ(v.size(), fabric.anchors.size() * W_VERTEX_WORDS);
+  const FabricWarp warp(test_device(), {&input, 1}, origin);
+  const std::vector<float> points = warp.points().read(test_device()), frames = warp.frames().read(test_device());
+  ASSERT_EQ(points.size(), fabric.anchors.size() * 3);
+  ASSERT_EQ(frames.size(), fabric.anchors.size() * W_FRAME_WORDS);
+  const auto at = [&](size_t i) { return dvec3(points[3 * i], points[3 * i + 1], points[3 * i + 2]); };
   for (size_t i = 0; i < fabric.anchors.size(); ++i) {
     const Anchor& a = fabric.anchors[i];
     const dvec3 expected = warp_point(fabric.mesh, {a.triangle, a.b1, a.b2, 0}, a.height) - origin;
-    const float* f = &v[i * W_VERTEX_WORDS];
+    const float* f = &frames[i * W_FRAME_WORDS];
     // The second term: corners and sum are floats that far from the scene origin.
-    ASSERT_LT(glm::length(dvec3(f[0], f[1], f[2]) - expected),
-              2e-4 * fabric.ply_radius + 2.4e-7 * glm::length(expected))
-        << i;
-    ASSERT_NEAR(f[3] * f[3] + f[4] * f[4] + f[5] * f[5], 1, 1e-5) << i;
-    ASSERT_EQ(f[6], a.length);
+    ASSERT_LT(glm::length(at(i) - expected), 2e-4 * fabric.ply_radius + 2.4e-7 * glm::length(expected)) << i;
+    ASSERT_NEAR(f[0] * f[0] + f[1] * f[1] + f[2] * f[2], 1, 1e-5) << i;
+    ASSERT_EQ(f[3], a.length);
   }
   // Carried normals: square to the mean edge, and the Jacobian's image of the flat one up to that projection.
   for (const PlyRun& run : fabric.runs)
     for (uint32_t k = 1; k + 1 < run.count; ++k) {
       const size_t i = run.first_vertex + k;
-      const auto at = [&](size_t j) { return dvec3(v[j * 7], v[j * 7 + 1], v[j * 7 + 2]); };
       const dvec3 t = glm::normalize(glm::normalize(at(i) - at(i - 1)) + glm::normalize(at(i + 1) - at(i)));
-      const dvec3 n(v[i * 7 + 3], v[i * 7 + 4], v[i * 7 + 5]);
+      const float* f = &frames[i * W_FRAME_WORDS];
+      const dvec3 n(f[0], f[1], f[2]);
       const Anchor& a = fabric.anchors[i];
       const dmat3 jacobian =
           warp_jacobian(fabric.mesh, {a.triangle, a.b1, a.b2, 0}, a.height, fabric.uv_per_metre[run.chart]);

@@ -56,21 +56,21 @@ __kernel void any_hit(PARAMS, __global float* out) {
   const WRay r = ray_of(rays + i);
   out[i] = (float)w_occluded(&s, &r);
 }
-__kernel void surfaces(PARAMS, __global const TestHit* hits, __global const float* vertices,
+__kernel void surfaces(PARAMS, __global const TestHit* hits, __global const float* frames,
                        __global TestSurface* out) {
   const uint i = get_global_id(0);
   if (i >= count || hits[i].kind != W_HIT_PLY) return;
   SCENE
   const WRay r = ray_of(rays + i);
-  write_surface(&s, vertices, &r, hits + i, out + i);
+  write_surface(&s, frames, &r, hits + i, out + i);
 }
 )";
 
 constexpr cl_uint kFirstOwn = 18;  // first argument behind PARAMS
 
-FabricDevice upload(const Device& device, const Fabric& fabric, float tau, LocalStage stage) {
+FabricDevice upload(const Device& device, const Fabric& fabric, float tau, LocalStage stage, bool updatable) {
   const FabricInput input{&fabric, 0, tau};
-  return upload_fabrics(device, {&input, 1}, {0, 0, 0}, stage);
+  return upload_fabrics(device, {&input, 1}, {0, 0, 0}, stage, updatable);
 }
 
 }  // namespace
@@ -86,12 +86,13 @@ std::vector<PlyPatch> patches_of(const Fabric& fabric, float tau) {
   return patches;
 }
 
-FabricTracer::FabricTracer(const Device& device, const Fabric& fabric, float tau, LocalStage stage)
+FabricTracer::FabricTracer(const Device& device, const Fabric& fabric, float tau, LocalStage stage, bool updatable)
     : device_(device),
+      knit_(fabric),
       stage_(stage),
       fibres_(fabric.report.fibres > 0),
       procedural_(fabric.procedural),
-      fabric_(upload(device, fabric, tau, stage)),
+      fabric_(upload(device, fabric, tau, stage, updatable)),
       leaves_(fabric_.tree.leaves.read(device)),
       counters_(device, W_EVENT_COUNT) {
   counters_.fill(device, 0);
@@ -137,7 +138,7 @@ std::vector<SurfaceOf<Real>> FabricTracer::surfaces_as(const std::vector<Ray>& r
   const Buffer<SurfaceOf<Real>> out(device_, rays.size());
   cl::Kernel kernel = bound("surfaces", in, rays.size(), std::is_same_v<Real, double>);
   kernel.setArg(kFirstOwn, hit_buffer.cl());
-  kernel.setArg(kFirstOwn + 1, fabric_.vertices.cl());
+  kernel.setArg(kFirstOwn + 1, fabric_.frames.cl());
   kernel.setArg(kFirstOwn + 2, out.cl());
   device_.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device_.global(rays.size()), device_.local());
   return out.read(device_);
@@ -183,6 +184,11 @@ uint32_t FabricTracer::segment(uint32_t code) const {
   const uint32_t* leaf = leaves_.data() + size_t(code >> 4) * 4;
   const uint32_t n = leaf[W_LEAF_LAYOUT] & 255, lane = code & 15;
   return leaf[W_LEAF_SEGMENT] + lane % n * leaf[W_LEAF_STRIDE] + lane / n;
+}
+
+std::vector<float> FabricTracer::positions() const {
+  const FabricInput input{&knit_, 0, -1};
+  return FabricWarp(device_, {&input, 1}, {0, 0, 0}).points().read(device_);
 }
 
 std::vector<uint32_t> FabricTracer::events() const { return counters_.read(device_); }

@@ -10,8 +10,14 @@ std::vector<PlyPatch> patches_of(const Fabric& fabric, float tau);
 
 class FabricTracer {
  public:
-  /// The cell stages need a tree and lists of their own: `stage` says for which one the fabric is uploaded.
-  FabricTracer(const Device& device, const Fabric& fabric, float tau = -1, LocalStage stage = LocalStage::exact);
+  /// `fabric` must outlive the tracer. The cell stages need a tree and lists of their own: `stage` says for which one
+  /// the fabric is uploaded.
+  FabricTracer(const Device& device, const Fabric& fabric, float tau = -1, LocalStage stage = LocalStage::exact,
+               bool updatable = false);
+  /// Carries an updatable fabric on to a moved mesh: see update_fabrics().
+  void move(std::span<const float> positions, std::span<const float> normals) {
+    update_fabrics(device_, fabric_, positions, normals);
+  }
 
   std::vector<Hit> trace(const std::vector<Ray>& rays) const;
   std::vector<Surface> surfaces(const std::vector<Ray>& rays, const std::vector<Hit>& hits) const;
@@ -30,7 +36,8 @@ class FabricTracer {
   uint32_t stack_overflows() const { return events()[W_EVENT_STACK_FULL]; }
   const Box& bounds() const { return fabric_.tree.bounds; }
   const FabricDevice& fabric() const { return fabric_; }
-  std::vector<float> vertices() const { return fabric_.vertices.read(device_); }
+  /// Where the vertices lie: x, y, z each.
+  std::vector<float> positions() const;
 
  private:
   cl::Kernel bound(const char* name, const Buffer<Ray>& rays, size_t count, bool twice) const;
@@ -40,6 +47,7 @@ class FabricTracer {
   std::vector<SurfaceOf<Real>> surfaces_as(const std::vector<Ray>& rays, const std::vector<HitOf<Real>>& hits) const;
 
   const Device& device_;
+  const Fabric& knit_;
   LocalStage stage_;
   bool fibres_, procedural_;
   FabricDevice fabric_;

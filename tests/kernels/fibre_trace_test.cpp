@@ -28,7 +28,7 @@ TEST(FibreTrace, AgreesWithBruteForce) {
     const Fabric fabric = knit(mesh, 7, 1000);
     EXPECT_GT(fabric.report.flyaways, 50u);
     const FabricTracer tracer(test_device(), fabric);
-    const BruteForce oracle(patches_of(fabric, -1), tracer.vertices());
+    const BruteForce oracle(patches_of(fabric, -1), tracer.positions());
     ASSERT_EQ(oracle.segments(), tracer.fabric().segment_count);
     ASSERT_EQ(oracle.segments(), fabric.report.segments);
     const std::vector<Ray> rays = primary_rays(tracer.bounds(), 20000, 3);
@@ -59,10 +59,8 @@ TEST(FibreTrace, RaysFromTheAxisMeetNoFrontFaceOfTheirOwnTube) {
   const std::vector<Ray> primary = primary_rays(tracer.bounds(), 60000, 9);
   const std::vector<Hit> first = tracer.trace(primary);
   const std::vector<Surface> at = tracer.surfaces(primary, first);
-  const std::vector<float> vertices = tracer.vertices();
-  const auto vertex = [&](uint32_t i) {
-    return dvec3(vertices[i * W_VERTEX_WORDS], vertices[i * W_VERTEX_WORDS + 1], vertices[i * W_VERTEX_WORDS + 2]);
-  };
+  const std::vector<float> at_vertex = tracer.positions();
+  const auto vertex = [&](uint32_t i) { return dvec3(at_vertex[3 * i], at_vertex[3 * i + 1], at_vertex[3 * i + 2]); };
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
   std::vector<Ray> rays;

@@ -12,7 +12,7 @@ namespace {
 using std::numbers::pi;
 
 dvec3 vertex(const Strands& s, size_t i) {
-  const float* v = s.vertices.data() + i * W_VERTEX_WORDS;
+  const float* v = s.positions.data() + i * 3;
   return {v[0], v[1], v[2]};
 }
 

@@ -61,7 +61,7 @@ void compare(const Case& c, const Tracer& tracer, const BruteForce& oracle, cons
 TEST(Oracle, ClosestAndOccludedAgreeAtEveryWidth) {
   const Device& device = test_device();
   for (const Case& c : cases()) {
-    const BruteForce oracle(c.strands.patches, c.strands.vertices);
+    const BruteForce oracle(c.strands.patches, c.strands.positions);
     Tracer tracer(device, c.strands);
     ASSERT_EQ(oracle.segments(), c.strands.segments());
     const std::vector<Ray> primary = primary_rays(tracer.tree().bounds, 25000, 3);

@@ -68,7 +68,7 @@ TEST(PlyProperty, RaysThatLeaveOutwardNeverComeBackToTheirSegment) {
     const dvec3 offset = radius * *number_between(0, 1000).as("distance in radii") * dvec3(0.6, -0.64, 0.48);
     const Strands strands = curve_of(shape, radius, [&](dvec3 x) { return radius * x + offset; });
     Tracer tracer(test_device(), strands);
-    const BruteForce oracle(strands.patches, strands.vertices);
+    const BruteForce oracle(strands.patches, strands.positions);
     const std::vector<Ray> rays = primary_rays(tracer.tree().bounds, kRays, shape.seed);
     const std::vector<Hit> hits = tracer.trace(rays, kLanes);
     const std::vector<Ray> outward = outward_rays(tracer, rays, hits, shape.seed + 1);
@@ -98,7 +98,7 @@ TEST(PlyProperty, AzimuthAndLengthAreContinuousAcrossJoints) {
     std::mt19937 random(shape.seed);
     std::uniform_real_distribution<double> uniform(-pi, pi);
     const auto vertex = [&](size_t i) {
-      const float* v = strands.vertices.data() + i * W_VERTEX_WORDS;
+      const float* v = strands.positions.data() + i * 3;
       return dvec3(v[0], v[1], v[2]);
     };
     constexpr double kStep = 1e-3;  // how far each of the two rays stays from the joint, radii

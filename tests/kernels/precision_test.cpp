@@ -60,7 +60,7 @@ std::vector<Ray> rays_from(const Strands& s, double radius, double distance, siz
   std::normal_distribution<double> normal;
   std::vector<Ray> rays;
   while (rays.size() < count) {
-    const float* v = s.vertices.data() + random() % (s.vertices.size() / W_VERTEX_WORDS) * W_VERTEX_WORDS;
+    const float* v = s.positions.data() + random() % (s.positions.size() / 3) * 3;
     const dvec3 off(normal(random), normal(random), normal(random));
     Ray ray = make_ray({0, 0, 0}, {normal(random), normal(random), normal(random)}, uint32_t(rays.size()));
     const dvec3 d(ray.d[0], ray.d[1], ray.d[2]);
@@ -90,7 +90,7 @@ TEST(HitPrecision, HitsFromAnyDistance) {
       "|\n");
   fmt::print("|---|---|---|---|---|---|---|---|---|\n");
   for (const Shape& shape : shapes()) {
-    const BruteForce oracle(shape.strands.patches, shape.strands.vertices);
+    const BruteForce oracle(shape.strands.patches, shape.strands.positions);
     Tracer tracer(test_device(), shape.strands);
     for (const double distance : {10.0, 1e3, 1e4, 1e5, 1e6}) {
       const std::vector<Ray> rays = rays_from(shape.strands, shape.radius, distance, 10000);
@@ -125,7 +125,7 @@ TEST(HitPrecision, NeighbouringPliesKeepTheirOrder) {
   Strands s;
   for (const double depth : {kApart, 0.0})
     s.add(1, 8, 1.0f, [&](uint32_t, uint32_t i) { return dvec3(1.3 * i, 0, 7 - depth); });
-  const BruteForce oracle(s.patches, s.vertices);
+  const BruteForce oracle(s.patches, s.positions);
   Tracer tracer(test_device(), s);
   std::mt19937 random(23);
   std::uniform_real_distribution<double> uniform(-1, 1);

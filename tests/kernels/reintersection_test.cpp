@@ -53,7 +53,7 @@ void leave(const char* name, BaseMesh mesh, int plies, size_t rays) {
   spec.tolerance = 0.1;
   const Fabric fabric = knit_fabric(std::move(mesh), stockinette_pattern(), spec);
   const FabricTracer tracer(test_device(), fabric);
-  const BruteForce oracle(patches_of(fabric, -1), tracer.vertices());
+  const BruteForce oracle(patches_of(fabric, -1), tracer.positions());
   const double r = fabric.ply_radius;
   const std::vector<JointPair> joints = joints_of(oracle);
   Tally tally;

@@ -77,12 +77,12 @@ __kernel void occluded(__global const uint* nodes, __global const uint* leaves, 
 }
 __kernel void surfaces(__global const uint* nodes, __global const uint* leaves, uint root, __global uint* counters,
                        __global const TestRay* rays, __global const TestHit* hits, uint count,
-                       __global const float* vertices, __global TestSurface* out) {
+                       __global const float* frames, __global TestSurface* out) {
   const uint i = get_global_id(0);
   if (i >= count || hits[i].kind != W_HIT_PLY) return;
   const WScene s = scene_of(nodes, leaves, root, counters);
   const WRay r = ray_of(rays + i);
-  write_surface(&s, vertices, &r, hits + i, out + i);
+  write_surface(&s, frames, &r, hits + i, out + i);
 }
 )";
 
@@ -107,7 +107,7 @@ const Device& test_device() {
 
 void Strands::add(uint32_t plies, uint32_t count, float radius,
                   const std::function<dvec3(uint32_t, uint32_t)>& position, bool ghosts, uint32_t patches_per_cell) {
-  const uint32_t first = uint32_t(vertices.size() / W_VERTEX_WORDS);
+  const uint32_t first = uint32_t(positions.size() / 3);
   for (uint32_t p = 0; p < plies; ++p) {
     double length = 0;
     dvec3 normal(0), last_tangent(0);
@@ -123,9 +123,9 @@ void Strands::add(uint32_t plies, uint32_t count, float radius,
         normal -= glm::dot(normal, tangent) / (1 + glm::dot(last_tangent, tangent)) * (last_tangent + tangent);
       normal = unit(normal - glm::dot(normal, tangent) * tangent);
       last_tangent = tangent;
-      for (int k = 0; k < 3; ++k) vertices.push_back(float(x[k]));
-      for (int k = 0; k < 3; ++k) vertices.push_back(float(normal[k]));
-      vertices.push_back(float(length));
+      for (int k = 0; k < 3; ++k) positions.push_back(float(x[k]));
+      for (int k = 0; k < 3; ++k) frames.push_back(float(normal[k]));
+      frames.push_back(float(length));
     }
   }
   const uint32_t intervals = W_LEAF_LANES / plies;
@@ -191,8 +191,8 @@ Strands stockinette(uint32_t rows, uint32_t loops, uint32_t steps_per_loop, doub
 
 Tracer::Tracer(const Device& device, const Strands& strands)
     : device_(device),
-      vertices_(device, strands.vertices),
-      tree_(build_ply_tree(device, strands.patches, vertices_)),
+      frames_(device, strands.frames),
+      tree_(build_ply_tree(device, strands.patches, Buffer<float>(device, strands.positions))),
       leaves_(tree_.leaves.read(device)),
       counters_(device, W_EVENT_COUNT) {
   counters_.fill(device, 0);
@@ -257,7 +257,7 @@ std::vector<SurfaceOf<Real>> Tracer::surfaces_as(const std::vector<Ray>& rays, c
   kernel.setArg(4, in.cl());
   kernel.setArg(5, hit_buffer.cl());
   kernel.setArg(6, uint32_t(rays.size()));
-  kernel.setArg(7, vertices_.cl());
+  kernel.setArg(7, frames_.cl());
   kernel.setArg(8, out.cl());
   device_.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device_.global(rays.size()), device_.local());
   return out.read(device_);

@@ -10,9 +10,10 @@
 
 namespace wale::test {
 
-/// Vertices (W_VERTEX_WORDS each) and patches.
+/// Vertices and patches.
 struct Strands {
-  std::vector<float> vertices;
+  std::vector<float> positions;  ///< x, y, z a vertex
+  std::vector<float> frames;     ///< W_FRAME_WORDS a vertex
   std::vector<PlyPatch> patches;
   float tau = -1;
   uint32_t next_cell = 0;
@@ -74,7 +75,6 @@ class Tracer {
   std::vector<uint32_t> events() const;
   uint32_t stack_overflows() const { return events()[W_EVENT_STACK_FULL]; }
   const PlyTree& tree() const { return tree_; }
-  const Buffer<float>& vertices() const { return vertices_; }
 
  private:
   template <typename Real>
@@ -85,7 +85,7 @@ class Tracer {
                                            const std::string& options);
 
   const Device& device_;
-  Buffer<float> vertices_;
+  Buffer<float> frames_;
   PlyTree tree_;
   std::vector<uint32_t> leaves_;
   Buffer<uint32_t> counters_;

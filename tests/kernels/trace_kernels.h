@@ -32,7 +32,7 @@ W_INLINE void write_hit(const WScene* s, const WRay* r, __global TestHit* out) {
   out->v = hit.v;
   out->occluded = w_occluded(s, r);
 }
-W_INLINE void write_surface(const WScene* s, __global const float* vertices, const WRay* r, __global const TestHit* in,
+W_INLINE void write_surface(const WScene* s, __global const float* frames, const WRay* r, __global const TestHit* in,
                             __global TestSurface* out) {
   WHit hit;
   hit.t = in->t;
@@ -40,7 +40,7 @@ W_INLINE void write_surface(const WScene* s, __global const float* vertices, con
   hit.code = in->code;
   hit.u = in->u;
   hit.v = in->v;
-  const WPlySurface p = w_ply_surface(s, vertices, r, &hit);
+  const WPlySurface p = w_ply_surface(s, frames, r, &hit);
   vstore3(p.anchor, 0, out->anchor);
   vstore3(p.x, 0, out->x);
   vstore3(p.n, 0, out->n);

@@ -123,7 +123,7 @@ void aim_everywhere(size_t rays) {
     spec.plies = cloth.plies;
     const Fabric fabric = knit_fabric(cloth.mesh, stockinette_pattern(), spec);
     const FabricTracer tracer(test_device(), fabric);
-    const BruteForce oracle(patches_of(fabric, -1), tracer.vertices());
+    const BruteForce oracle(patches_of(fabric, -1), tracer.positions());
     aim(
         cloth.name, oracle, each, 1, [&](const std::vector<Ray>& batch) { return tracer.trace(batch); }, all);
   }
@@ -132,7 +132,7 @@ void aim_everywhere(size_t rays) {
   const std::string lanes = fmt::format("-DW_LANES={}", test_device().traits().lanes);
   for (const auto& [name, strand] : strands) {
     Tracer tracer(test_device(), strand);
-    const BruteForce oracle(strand.patches, strand.vertices);
+    const BruteForce oracle(strand.patches, strand.positions);
     aim(
         name, oracle, each, 2, [&](const std::vector<Ray>& batch) { return tracer.trace(batch, lanes); }, all);
   }

@@ -1,0 +1,248 @@
+// Building and updating: a knitted fabric's curves through Wale's warp, leaves and tree, and through Intel Embree's
+// round linear curves, in one process, interleaved: embree_updates [segments] [repetitions]. Prints medians of wall and
+// CPU time on two threads each, and of the ratios of every repetition. A frame moves the base mesh; Embree is handed
+// the new points ready made, Wale makes them.
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+
+#include "geom/base_mesh_generators.h"
+#include "tests/kernels/fabric_tracer.h"
+
+namespace {
+
+using namespace wale;
+using namespace wale::test;
+
+struct Seconds {
+  double wall = 0, cpu = 0;
+};
+
+template <typename Work>
+Seconds time_of(const Work& work) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t cpu = std::clock();
+  work();
+  return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+          double(std::clock() - cpu) / CLOCKS_PER_SEC};
+}
+
+double median(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  return v[v.size() / 2];
+}
+
+/// A sheet of stockinette of about `segments` ply segments: 4 mm wales on a mesh of one vertex a wale or so.
+Fabric sheet(double segments) {
+  constexpr double kWale = 0.004;
+  FabricSpec spec;
+  spec.scale.kind = FabricScale::Kind::uv_metres;
+  const Pattern pattern = stockinette_pattern(kWale);
+  const double per_area = double(estimate_segments(make_swatch(1, 1, 1, 1), pattern, spec));
+  const double side = std::sqrt(segments / per_area);
+  const int steps = std::max(2, int(side / kWale));
+  return knit_fabric(make_swatch(side, side, steps, steps), pattern, spec);
+}
+
+/// The base mesh at a moment of its motion: a wave runs through the sheet. Metres.
+void wave(const BaseMesh& mesh, double time, std::vector<float>& positions, std::vector<float>& normals) {
+  positions.clear();
+  normals.clear();
+  for (const dvec3& p : mesh.position) {
+    const double height = 0.01, k = 60, a = k * p.x + time;
+    const dvec3 n = glm::normalize(dvec3(-height * k * std::cos(a), 0, 1));
+    for (const double x : {p.x, p.y, p.z + height * std::sin(a)}) positions.push_back(float(x));
+    for (int i = 0; i < 3; ++i) normals.push_back(float(n[i]));
+  }
+}
+
+std::atomic<int64_t> embree_bytes{0};
+
+/// The peer's scene. Kept as one that is built once, or as one that changes.
+class Peer {
+ public:
+  Peer(const char* label, RTCBuildQuality scene, RTCBuildQuality geometry, RTCSceneFlags flags)
+      : name(label), quality_(scene), geometry_quality_(geometry), flags_(flags) {
+    device_ = rtcNewDevice("threads=2,frequency_level=simd512");
+    rtcSetDeviceMemoryMonitorFunction(
+        device_,
+        [](void*, ssize_t change, bool) {
+          embree_bytes += change;
+          return true;
+        },
+        nullptr);
+  }
+  ~Peer() {
+    clear();
+    rtcReleaseDevice(device_);
+  }
+  Peer(const Peer&) = delete;
+  Peer& operator=(const Peer&) = delete;
+
+  void clear() {
+    if (scene_) rtcReleaseScene(scene_);
+    scene_ = nullptr;
+  }
+
+  Seconds build(const Fabric& fabric, const std::vector<float>& points) {
+    clear();
+    scene_ = rtcNewScene(device_);
+    rtcSetSceneBuildQuality(scene_, quality_);
+    rtcSetSceneFlags(scene_, flags_);
+    geometry_ = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+    rtcSetGeometryBuildQuality(geometry_, geometry_quality_);
+    size_t segments = 0;
+    for (const PlyRun& run : fabric.runs) segments += size_t(run.plies) * (run.count - 1 - 2 * run.ghost_ends);
+    vertices_ = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry_, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, points.size() / 3));
+    auto* indices = static_cast<uint32_t*>(
+        rtcSetNewGeometryBuffer(geometry_, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, 4, segments));
+    auto* flags = static_cast<uint8_t*>(
+        rtcSetNewGeometryBuffer(geometry_, RTC_BUFFER_TYPE_FLAGS, 0, RTC_FORMAT_UCHAR, 1, segments));
+    size_t n = 0;
+    for (const PlyRun& run : fabric.runs)
+      for (uint32_t ply = 0; ply < run.plies; ++ply) {
+        const uint32_t first = run.first_vertex + ply * run.count, skip = run.ghost_ends;
+        for (uint32_t i = 0; i < run.count; ++i) vertices_[4 * size_t(first + i) + 3] = run.radius;
+        for (uint32_t k = skip; k + 1 + skip < run.count; ++k) {
+          indices[n] = first + k;
+          flags[n++] = uint8_t((k > 0 ? RTC_CURVE_FLAG_NEIGHBOR_LEFT : 0) |
+                               (k + 2 < run.count ? RTC_CURVE_FLAG_NEIGHBOR_RIGHT : 0));
+        }
+      }
+    place(points);
+    rtcCommitGeometry(geometry_);
+    rtcAttachGeometry(scene_, geometry_);
+    rtcReleaseGeometry(geometry_);
+    const Seconds seconds = time_of([&] { rtcCommitScene(scene_); });
+    bytes = embree_bytes;
+    return seconds;
+  }
+
+  Seconds update(const std::vector<float>& points) {
+    place(points);
+    return time_of([&] {
+      rtcUpdateGeometryBuffer(geometry_, RTC_BUFFER_TYPE_VERTEX, 0);
+      rtcCommitGeometry(geometry_);
+      rtcCommitScene(scene_);
+    });
+  }
+
+  const char* name;
+  int64_t bytes = 0;
+
+ private:
+  void place(const std::vector<float>& points) {
+    for (size_t i = 0; i < points.size() / 3; ++i) std::copy_n(points.data() + 3 * i, 3, vertices_ + 4 * i);
+  }
+
+  RTCBuildQuality quality_, geometry_quality_;
+  RTCSceneFlags flags_;
+  RTCDevice device_ = nullptr;
+  RTCScene scene_ = nullptr;
+  RTCGeometry geometry_ = nullptr;
+  float* vertices_ = nullptr;
+};
+
+constexpr int kPeers = 2;
+
+struct Row {
+  std::vector<double> wall, cpu, wall_ratio, cpu_ratio;
+  void add(Seconds s, Seconds other) {
+    wall.push_back(s.wall);
+    cpu.push_back(s.cpu);
+    wall_ratio.push_back(other.wall / s.wall);
+    cpu_ratio.push_back(other.cpu / s.cpu);
+  }
+  void print(const std::string& name, bool ratios) const {
+    fmt::print("| {} | {:.4g} | {:.4g} |", name, 1e3 * median(wall), 1e3 * median(cpu));
+    if (ratios)
+      fmt::print(" {:.3f} ({:.3f} to {:.3f}) | {:.3f} |\n", median(wall_ratio),
+                 *std::min_element(wall_ratio.begin(), wall_ratio.end()),
+                 *std::max_element(wall_ratio.begin(), wall_ratio.end()), median(cpu_ratio));
+    else
+      fmt::print(" | |\n");
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const double wanted = argc > 1 ? std::atof(argv[1]) : 1e6;
+  const int repetitions = argc > 2 ? std::atoi(argv[2]) : 5;
+  const Device& device = test_device();
+  Fabric fabric;
+  const Seconds knit = time_of([&] { fabric = sheet(wanted); });
+  const std::vector<PlyPatch> patches = patches_of(fabric, -1);
+  const double segments = double(fabric.report.segments);
+  const FabricInput input{&fabric, 0, -1};
+  fmt::print("{} {}, Embree {}, {} segments, {} mesh vertices\n\n", device.traits().name, device.traits().driver,
+             RTC_VERSION_STRING, fabric.report.segments, fabric.mesh.position.size());
+  fmt::print("| | wall, ms | CPU, ms | Wale / Embree, wall | CPU |\n| --- | --- | --- | --- | --- |\n");
+  fmt::print("| knit: stitch, plies, cut | {:.4g} | {:.4g} | | |\n", 1e3 * knit.wall, 1e3 * knit.cpu);
+
+  std::vector<float> positions, normals;
+  // Scenes of default or low quality take as long as one of high quality.
+  Peer peers[kPeers] = {{"high quality", RTC_BUILD_QUALITY_HIGH, RTC_BUILD_QUALITY_HIGH, RTC_SCENE_FLAG_NONE},
+                        {"dynamic, refit", RTC_BUILD_QUALITY_LOW, RTC_BUILD_QUALITY_REFIT, RTC_SCENE_FLAG_DYNAMIC}};
+  Row upload_row, warp_row, tree_row, update_row, refit_row, commit_row[kPeers], build_row[kPeers];
+  int64_t peer_bytes[kPeers] = {};
+  const FabricWarp still(device, {&input, 1}, {0, 0, 0});
+  const std::vector<float> points = still.points().read(device);
+  build_ply_tree(device, patches, still.points());  // compiles the kernels
+  size_t trace_bytes = 0;
+  for (int k = 0; k < repetitions; ++k) {
+    upload_row.add(time_of([&] { const FabricWarp warp(device, {&input, 1}, {0, 0, 0}); }), {});
+    Seconds ours;
+    {
+      PlyTree tree;
+      ours = time_of([&] { tree = build_ply_tree(device, patches, still.points()); });
+      trace_bytes = tree.leaves.bytes() + tree.nodes.bytes() + tree.node_cell.bytes();
+    }
+    tree_row.add(ours, {});
+    for (int i = 0; i < kPeers; ++i) {
+      const Seconds theirs = peers[i].build(fabric, points);
+      build_row[i].add(theirs, ours);
+      peer_bytes[i] = peers[i].bytes;
+      peers[i].clear();
+    }
+  }
+  upload_row.print("warp: upload and first run", false);
+  tree_row.print("leaves and tree", false);
+  for (int i = 0; i < kPeers; ++i) build_row[i].print(fmt::format("Embree build, {}", peers[i].name), true);
+
+  size_t shade_bytes = 0, update_bytes = 0;
+  {
+    FabricDevice moving = upload_fabrics(device, {&input, 1}, {0, 0, 0}, LocalStage::exact, true);
+    shade_bytes = trace_bytes + moving.frames.bytes();
+    update_bytes = moving.bytes;
+    double time = 0;
+    for (int i = 0; i < kPeers; ++i) {
+      peers[i].build(fabric, points);
+      for (int k = -1; k < repetitions; ++k) {  // the first one is not counted
+        wave(fabric.mesh, time += 0.7, positions, normals);
+        const Seconds whole = time_of([&] { update_fabrics(device, moving, positions, normals); });
+        const Seconds theirs = peers[i].update(moving.warp->points().read(device));
+        const Seconds nodes = time_of([&] { refit(device, moving.tree); });
+        if (k < 0) continue;
+        commit_row[i].add(theirs, whole);
+        update_row.add(whole, {});
+        refit_row.add(nodes, {});
+      }
+      peers[i].clear();
+    }
+  }
+  update_row.print("update: warp, leaves and nodes", false);
+  refit_row.print("of it leaves and nodes", false);
+  for (int i = 0; i < kPeers; ++i) commit_row[i].print(fmt::format("Embree commit, {}", peers[i].name), true);
+  fmt::print("\nbytes a segment: {:.1f} to trace, {:.1f} to shade too, {:.1f} to update too; Embree",
+             double(trace_bytes) / segments, double(shade_bytes) / segments, double(update_bytes) / segments);
+  for (int i = 0; i < kPeers; ++i)
+    fmt::print("{} {:.1f} ({})", i ? "," : "", double(peer_bytes[i]) / segments, peers[i].name);
+  fmt::print("\n");
+}

@@ -1,0 +1,112 @@
+#include "host/fabric_warp.h"
+
+#include <cmath>
+
+#include "geom/error.h"
+#include "host/program.h"
+
+namespace wale {
+namespace {
+
+// What the warp reads, of all fabrics.
+struct WarpInput {
+  std::vector<WAnchor> anchors;
+  std::vector<float> positions, normals, cloth;
+  std::vector<uint32_t> triangles;
+  std::vector<uint8_t> flags;
+};
+
+void append(WarpInput& out, const Fabric& fabric, dvec3 origin) {
+  const uint32_t first_triangle = uint32_t(out.triangles.size() / 3), first_point = uint32_t(out.positions.size() / 3);
+  const size_t first_vertex = out.anchors.size();
+  for (const Anchor& a : fabric.anchors)
+    out.anchors.push_back({a.triangle + first_triangle, a.b1, a.b2, a.height, a.nx, a.ny, a.nz, a.length});
+  for (size_t i = 0; i < fabric.mesh.position.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      out.positions.push_back(float(fabric.mesh.position[i][k] - origin[k]));
+      out.normals.push_back(float(fabric.mesh.normal[i][k]));
+    }
+  for (size_t t = 0; t < fabric.mesh.triangle.size(); ++t) {
+    const uint32_t chart = t < fabric.chart_of_triangle.size() ? fabric.chart_of_triangle[t] : W_NONE;
+    const dvec2 per_metre = chart < fabric.uv_per_metre.size() ? fabric.uv_per_metre[chart] : dvec2(1);
+    for (int corner = 0; corner < 3; ++corner) {
+      out.triangles.push_back(fabric.mesh.triangle[t][corner] + first_point);
+      // Only differences matter: relative to the first corner, which keeps their precision in float.
+      const dvec2 xy = (fabric.mesh.uv[t][corner] - fabric.mesh.uv[t][0]) / per_metre;
+      out.cloth.push_back(float(xy.x));
+      out.cloth.push_back(float(xy.y));
+    }
+  }
+  out.flags.resize(out.anchors.size(), 0);
+  for (const PlyRun& run : fabric.runs)
+    for (uint32_t p = 0; p < run.plies; ++p) {
+      const size_t first = first_vertex + run.first_vertex + size_t(p) * run.count;
+      if (run.count == 0) continue;
+      out.flags[first] |= 1;
+      out.flags[first + run.count - 1] |= 2;
+    }
+}
+
+}  // namespace
+
+FabricWarp::FabricWarp(const Device& device, std::span<const FabricInput> inputs, dvec3 origin, size_t more) {
+  WarpInput in;
+  for (const FabricInput& input : inputs)
+    if (input.fabric->lattice.empty()) append(in, *input.fabric, origin);
+  count_ = uint32_t(in.anchors.size());
+  points_ = Buffer<float>(device, (count_ + more) * 3);
+  frames_ = Buffer<float>(device, (count_ + more) * W_FRAME_WORDS);
+  positions_ = Buffer<float>(device, in.positions);
+  triangles_ = Buffer<uint32_t>(device, in.triangles);
+  if (count_ == 0) return;
+  anchors_ = Buffer<WAnchor>(device, in.anchors);
+  normals_ = Buffer<float>(device, in.normals);
+  cloth_ = Buffer<float>(device, in.cloth);
+  flags_ = Buffer<uint8_t>(device, in.flags);
+  const cl::Program program = build_program(device, "warp.cl");
+  warp_points_ = cl::Kernel(program, "warp_points");
+  warp_normals_ = cl::Kernel(program, "warp_normals");
+  for (cl::Kernel* kernel : {&warp_points_, &warp_normals_}) {
+    kernel->setArg(0, anchors_.cl());
+    kernel->setArg(1, positions_.cl());
+    kernel->setArg(2, normals_.cl());
+    kernel->setArg(3, triangles_.cl());
+  }
+  warp_points_.setArg(4, points_.cl());
+  warp_points_.setArg(5, count_);
+  warp_normals_.setArg(4, cloth_.cl());
+  warp_normals_.setArg(5, flags_.cl());
+  warp_normals_.setArg(6, points_.cl());
+  warp_normals_.setArg(7, frames_.cl());
+  warp_normals_.setArg(8, count_);
+  run(device);
+  device.queue().finish();
+}
+
+void FabricWarp::run(const Device& device) {
+  if (count_ == 0) return;
+  const size_t lanes = device.traits().lanes,
+               items = (count_ + lanes - 1) / lanes;  // a work-item warps W_LANES vertices
+  for (const cl::Kernel* kernel : {&warp_points_, &warp_normals_})
+    device.queue().enqueueNDRangeKernel(*kernel, cl::NullRange, device.large_global(items), device.local());
+}
+
+void FabricWarp::move(const Device& device, std::span<const float> positions, std::span<const float> normals) {
+  if (positions.size() != positions_.count() || normals.size() != positions_.count())
+    bug("warp: {} and {} floats for base meshes of {}", positions.size(), normals.size(), positions_.count());
+  for (size_t i = 0; i < positions.size(); ++i)
+    if (!std::isfinite(positions[i]) || !std::isfinite(normals[i]))
+      user_error("base mesh: vertex {} was moved to {} with normal component {}; both must be finite", i / 3,
+                 positions[i], normals[i]);
+  if (count_ == 0) return;
+  device.queue().enqueueWriteBuffer(positions_.cl(), CL_TRUE, 0, positions.size_bytes(), positions.data());
+  device.queue().enqueueWriteBuffer(normals_.cl(), CL_TRUE, 0, normals.size_bytes(), normals.data());
+  run(device);
+}
+
+size_t FabricWarp::bytes() const {
+  return anchors_.bytes() + positions_.bytes() + normals_.bytes() + cloth_.bytes() + triangles_.bytes() +
+         flags_.bytes();
+}
+
+}  // namespace wale
