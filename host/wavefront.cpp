@@ -31,7 +31,11 @@ cl_float2 pixel_width(const WCamera& camera) {
 
 Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Features& features, const WCamera& camera,
                      uint32_t pool, const std::filesystem::path& kernel_dir)
-    : device_(device), scene_(scene), features_(features), camera_(camera), pool_(std::max(64u, pool)),
+    : device_(device),
+      scene_(scene),
+      features_(features),
+      camera_(camera),
+      pool_(std::max(64u, pool)),
       film_(device, camera.width, camera.height, features.aovs) {
   const auto vec = [&](Buffer<w_float4>& buffer, size_t count) {
     buffer = Buffer<w_float4>(device_, count);
@@ -148,8 +152,8 @@ void Wavefront::launch_connect(uint32_t count_index, uint32_t depth, size_t boun
 }
 
 void Wavefront::set_frame(const WFrame& frame) {
-  for (const char* name : {"generate", "intersect", "intersect_packets", "miss", "shade_ply", "shade_fibre", "shade_surface", "connect",
-                           "accumulate", "accumulate_aov"})
+  for (const char* name : {"generate", "intersect", "intersect_packets", "miss", "shade_ply", "shade_fibre",
+                           "shade_surface", "connect", "accumulate", "accumulate_aov"})
     if (const auto found = kernels_.find(name); found != kernels_.end()) found->second.setArg(0, frame);
 }
 

@@ -193,18 +193,23 @@ int main(int argc, char** argv) {
   struct Kind {
     const char* name;
     const std::vector<Ray>* rays;
+    const char* kernel;
     bool any;
   };
-  for (const Kind kind : {Kind{"primary", &rays.primary, false}, Kind{"shadow", &rays.shadow, true},
-                          Kind{"bounce", &rays.bounce, false}}) {
-    const char* kernel = kind.any ? "occluded" : "closest";
+  std::vector<Kind> kinds = {{"primary, one by one", &rays.primary, "closest", false},
+                             {"shadow", &rays.shadow, "occluded", true},
+                             {"bounce", &rays.bounce, "closest", false}};
+  // As the renderer sends them, where the device's vectors are wide enough.
+  if (device.traits().lanes == W_NODE_WIDTH)
+    kinds.insert(kinds.begin(), {"primary", &rays.primary, "closest_packets", false});
+  for (const Kind& kind : kinds) {
     std::vector<double> ours, theirs, ratios;
     std::vector<float> hits, hits16;
-    tracer.time(*kind.rays, options, kernel);
+    tracer.time(*kind.rays, options, kind.kernel);
     peer.time(*kind.rays, kind.any, false, hits);
     for (int k = 0; k < repetitions; ++k) {
       const double one = peer.time(*kind.rays, kind.any, false, hits);
-      const double a = tracer.time(*kind.rays, options, kernel);
+      const double a = tracer.time(*kind.rays, options, kind.kernel);
       const double sixteen = peer.time(*kind.rays, kind.any, true, hits16);
       const double best = std::min(one, sixteen);
       ours.push_back(a);

@@ -170,7 +170,7 @@ TEST(MemoryNeeds, OneBufferThatIsTooLargeIsNamed) {
   Fabric fabric;
   fabric.anchors.resize(1000);
   world.fabrics.push_back(fabric);
-  device.traits().max_alloc_bytes = 20000;
+  device.traits().max_alloc_bytes = 1000 * W_FRAME_WORDS * 4 - 1;
   auto& traits = device.traits();
   const auto needs = memory_needs(world, Features{}, 64, traits);
   const std::string line = user_message([&] { require_memory(device, needs); });

@@ -36,16 +36,21 @@ __kernel void trace(__global const uint* nodes, __global const uint* leaves, uin
   write_hit(&s, &r, hits + i);
 }
 #if W_LANES == 16
+/* Traces the rays of work-item i together; returns how many they are. */
+uint trace_packet(const WScene* s, __global const TestRay* rays, uint count, uint first, WPacket* packet) {
+  const uint own = min(count - first, (uint)W_LANES);
+  WRay alone[W_LANES];
+  for (uint i = 0; i < own; ++i) alone[i] = ray_of(rays + first + i);
+  w_closest_packet(s, alone, own, packet);
+  return own;
+}
 __kernel void trace_packets(__global const uint* nodes, __global const uint* leaves, uint root,
                             __global uint* counters, __global const TestRay* rays, __global TestHit* hits, uint count) {
   const uint first = get_global_id(0) * W_LANES;
   if (first >= count) return;
-  const uint own = min(count - first, (uint)W_LANES);
   const WScene s = scene_of(nodes, leaves, root, counters);
-  WRay alone[W_LANES];
-  for (uint i = 0; i < own; ++i) alone[i] = ray_of(rays + first + i);
   WPacket packet;
-  w_closest_packet(&s, alone, own, &packet);
+  const uint own = trace_packet(&s, rays, count, first, &packet);
   for (uint i = 0; i < own; ++i) {
     const WHit hit = w_packet_hit(&packet, i);
     hits[first + i].t = hit.t;
@@ -54,6 +59,19 @@ __kernel void trace_packets(__global const uint* nodes, __global const uint* lea
     hits[first + i].u = hit.u;
     hits[first + i].v = hit.v;
     hits[first + i].occluded = 0;
+  }
+}
+__kernel void closest_packets(__global const uint* nodes, __global const uint* leaves, uint root,
+                              __global uint* counters, __global const TestRay* rays, __global float* out, uint count) {
+  const uint first = get_global_id(0) * W_LANES;
+  if (first >= count) return;
+  const WScene s = scene_of(nodes, leaves, root, counters);
+  WPacket packet;
+  const uint own = trace_packet(&s, rays, count, first, &packet);
+  for (uint i = 0; i < own; ++i) {
+    const WHit hit = w_packet_hit(&packet, i);
+    out[2 * (first + i)] = (float)hit.t;
+    out[2 * (first + i) + 1] = as_float(hit.code);
   }
 }
 #endif
@@ -237,8 +255,10 @@ double Tracer::time(const std::vector<Ray>& rays, const std::string& options, co
   kernel.setArg(4, in.cl());
   kernel.setArg(5, out.cl());
   kernel.setArg(6, uint32_t(rays.size()));
+  const size_t rays_per_item = name == "closest_packets" ? W_NODE_WIDTH : 1;
+  const size_t items = (rays.size() + rays_per_item - 1) / rays_per_item;
   const std::clock_t start = std::clock();
-  device_.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device_.global(rays.size()), device_.local());
+  device_.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device_.global(items), device_.local());
   device_.queue().finish();
   return double(std::clock() - start) / CLOCKS_PER_SEC;
 }

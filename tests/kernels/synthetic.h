@@ -64,7 +64,7 @@ class Tracer {
   std::vector<Hit> trace_packets(const std::vector<Ray>& rays);
   /// The same source built with double arithmetic: the device must have fp64.
   std::vector<HitOf<double>> trace_in_double(const std::vector<Ray>& rays);
-  /// CPU seconds, of all threads, of one launch of kernel `closest` or `occluded` over the rays, without copies.
+  /// CPU seconds, of all threads, of one launch of kernel `closest`, `closest_packets` or `occluded` over the rays, without copies.
   double time(const std::vector<Ray>& rays, const std::string& options, const std::string& kernel);
   std::vector<Surface> surfaces(const std::vector<Ray>& rays, const std::vector<Hit>& hits);
   std::vector<SurfaceOf<double>> surfaces_in_double(const std::vector<Ray>& rays,
