@@ -156,7 +156,6 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   Devices devices(args.device);
   rehearsal.begin(devices.open());
   start.step("open devices");
-  catch_stop_signals();
 
   World world;
   {
@@ -173,6 +172,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   options.seconds = args.seconds;
   options.aovs = aovs;
   options.kernel_dir = args.kernel_dir;
+  options.ready = catch_stop_signals;  // before the first ray there is nothing to keep
   devices.upload(world, scene.integrator, options);
   start.step("warp and tree");
   Progress bar("render", args.quiet);
@@ -183,10 +183,12 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
 
   for (const auto& output : args.outputs) write_image(r.image, output, scene.film.exposure, scene.film.view);
   const Features features = analyse(world, scene.integrator, aovs, int(devices.list().front().device->traits().lanes));
-  Stats stats = stats_of(scene, world, devices.list(), features, r);
-  stats.first_sample_seconds = start.seconds();
-  stats.start = start.steps();
-  if (!args.stats.empty()) write_stats(stats, args.stats);
+  if (!args.stats.empty()) {
+    Stats stats = stats_of(scene, world, devices.list(), features, r);
+    stats.first_sample_seconds = start.seconds();
+    stats.start = start.steps();
+    write_stats(stats, args.stats);
+  }
   const double rays = double(r.counts.primary + r.counts.bounce + r.counts.shadow);
   if (!args.quiet)
     fmt::print(stderr, "{} samples per pixel in {}, {:.2f} Mrays/s\n", r.samples, duration_text(r.seconds),

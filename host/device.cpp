@@ -55,7 +55,12 @@ DeviceTraits traits_of(const cl::Device& device) {
     t.parallel_builds = false;
     t.build_options = " -cl-opt-disable -DW_PORTABLE";
   }
-  if (const char* more = std::getenv("WALE_KERNEL_OPTIONS")) t.build_options += std::string(" ") + more;
+  if (const char* more = std::getenv("WALE_KERNEL_OPTIONS")) {
+    // The host sizes its launches by the lanes.
+    if (std::string(more).find("W_LANES") != std::string::npos)
+      user_error("WALE_KERNEL_OPTIONS: {}: W_LANES is chosen by the scene's integrator.lanes", more);
+    t.build_options += std::string(" ") + more;
+  }
   return t;
 }
 

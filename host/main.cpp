@@ -33,7 +33,8 @@ void add_scene_options(CLI::App& command, SceneArgs& args) {
   command.add_option("SCENE", args.scene, "scene file")->required();
   command.add_option("--set", args.set, "change a key of the scene: key.path=value (repeatable)")
       ->allow_extra_args(false);
-  command.add_option("--device", args.device, "OpenCL device (see `wale devices`): its number; for a render also several, 0,2, or all");
+  command.add_option("--device", args.device,
+                     "OpenCL device (see `wale devices`): its number; for a render also several, 0,2, or all");
   command.add_option("--kernel-dir", args.kernel_dir, "read kernels from this folder instead of the built-in ones");
   command.add_flag("--quiet", args.quiet, "no progress");
 }

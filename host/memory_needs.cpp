@@ -14,7 +14,7 @@ namespace {
 // Per patch of a tree of 16-wide nodes that are two thirds full.
 constexpr uint64_t kTreeBytes = W_NODE_WORDS * 4 / 10 + 4;
 // What is gone before the rays: per vertex its anchor, flags and position, per patch its run and box.
-constexpr uint64_t kWarpBytes = sizeof(WAnchor) + 1 + 12, kPackBytes = 40;
+constexpr uint64_t kWarpBytes = sizeof(WAnchor) + 1, kPackBytes = 40;
 
 std::string size_text(uint64_t bytes) {
   return bytes < 1000000000 ? fmt::format("{:.1f} MB", 1e-6 * double(bytes))
@@ -29,9 +29,10 @@ uint64_t leaf_words(uint32_t intervals, uint32_t plies) {
 
 std::vector<MemoryNeed> memory_needs(const World& world, const Features& features, uint32_t pool,
                                      const DeviceTraits& traits) {
-  uint64_t vertices = 0, patches = 0, leaves = 0, lattices = 0;
+  uint64_t vertices = 0, patches = 0, leaves = 0, lattices = 0, anchors = 0;
   for (const Fabric& fabric : world.fabrics) {
     vertices += fabric.anchors.size();
+    anchors += fabric.anchors.size();
     patches += fabric.patches.size();
     for (const Patch& patch : fabric.patches) leaves += 4 * leaf_words(patch.intervals, fabric.runs[patch.run].plies);
     for (const LatticeChart& chart : fabric.lattice) {
@@ -50,22 +51,25 @@ std::vector<MemoryNeed> memory_needs(const World& world, const Features& feature
   const uint64_t pixels = padded_pixels(camera.width, camera.height);
   const uint64_t pixel_bytes = kScrambles * sizeof(w_float4) + (features.aovs ? 4 * sizeof(w_float4) + 4 : 0);
   const uint64_t path_bytes = 10 * sizeof(w_float4) + 8 + 9 * 4 + (features.aovs ? 4 * sizeof(w_float4) : 0);
+  const uint64_t path_buffer = (features.aovs ? 4 : 1) * sizeof(w_float4);
   const double fits = std::sqrt(std::min(1.0, 0.5 * double(traits.global_bytes) / double(pixels * pixel_bytes)));
   const std::string fewer = "fewer repeats, a coarser gauge or a larger tolerance";
   std::vector<MemoryNeed> needs = {
-      {"film", pixels * pixel_bytes, true,
+      {"film", pixels * pixel_bytes, 0,
        fmt::format("a film.size of at most {} x {}", int(camera.width * fits), int(camera.height * fits))},
-      {"path state", pool * path_bytes, false,
-       fmt::format("an integrator.pool of at most {}", traits.global_bytes / 2 / path_bytes)},
-      {"ply vertices", vertices * W_FRAME_WORDS * 4, false, fewer},
-      {"ply leaves", leaves, false, fewer},
-      {"lattices", lattices, false, "fewer repeats, a coarser gauge or fewer lattice cells"},
-      {"ply tree", patches * kTreeBytes, false, fewer},
-      {"warp and pack", vertices * kWarpBytes + patches * kPackBytes, true, fewer},
-      {"ply colours", world.ply_colors.size() * 4, false, "fewer colours"},
-      {"triangles", world.triangles.size() * 4 * 2, false, "simpler props"},
+      {"path state", pool * path_bytes, pool * path_buffer,
+       fmt::format("an integrator.pool of at most {}",
+                   std::min(traits.global_bytes / 2 / path_bytes, traits.max_alloc_bytes / path_buffer))},
+      {"ply vertices", vertices * W_FRAME_WORDS * 4, vertices * W_FRAME_WORDS * 4, fewer},
+      {"ply leaves", leaves, leaves, fewer},
+      {"lattices", lattices, lattices, "fewer repeats, a coarser gauge or fewer lattice cells"},
+      {"ply tree", patches * kTreeBytes, patches * kTreeBytes, fewer},
+      {"warp and pack", anchors * kWarpBytes + vertices * 12 + patches * kPackBytes, anchors * sizeof(WAnchor), fewer},
+      {"ply colours", world.ply_colors.size() * 4, world.ply_colors.size() * 4, "fewer colours"},
+      {"triangles", world.triangles.size() * 4 * 2, world.triangles.size() * 4, "simpler props"},
       {"environment",
-       world.environment_tables.texels.size() * sizeof(w_float4) + world.environment_tables.cdf.size() * 4, false,
+       world.environment_tables.texels.size() * sizeof(w_float4) + world.environment_tables.cdf.size() * 4,
+       world.environment_tables.texels.size() * sizeof(w_float4),
        "a smaller environment image"}};
   std::stable_sort(needs.begin(), needs.end(), [](const auto& a, const auto& b) { return a.bytes > b.bytes; });
   return needs;
@@ -84,11 +88,11 @@ void require_memory(const Device& device, const std::vector<MemoryNeed>& needs) 
                needs.front().instead);
   }
   for (const auto& need : needs)
-    if (!need.splits && need.bytes > traits.max_alloc_bytes)
+    if (need.largest > traits.max_alloc_bytes)
       user_error(
           "device {} ({}) holds at most {} in one buffer, {} would need {}; use {}, or another device (see `wale "
           "devices`)",
-          device.number(), traits.name, size_text(traits.max_alloc_bytes), need.name, size_text(need.bytes),
+          device.number(), traits.name, size_text(traits.max_alloc_bytes), need.name, size_text(need.largest),
           need.instead);
 }
 

@@ -12,7 +12,7 @@ namespace wale {
 struct MemoryNeed {
   std::string name;
   uint64_t bytes = 0;
-  bool splits = false;  ///< over several buffers, where one may not hold it
+  uint64_t largest = 0;  ///< bytes of its largest buffer, of those that are not split where one may not hold them
   std::string instead;  ///< the nearest choice that takes less, in words
 };
 

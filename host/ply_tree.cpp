@@ -52,7 +52,7 @@ void write_headers(const Device& device, std::span<const PlyPatch> patches, cons
 
 void refuse_if_too_far(const PlyPatch& patch, const Box& box) {
   for (int k = 0; k < 3; ++k)
-    if (!(box.lo[k] >= -kLargestCoordinate && box.hi[k] <= kLargestCoordinate && patch.radius <= kLargestCoordinate))
+    if (!(box.lo[k] <= box.hi[k] && box.lo[k] >= -kLargestCoordinate && box.hi[k] <= kLargestCoordinate && patch.radius <= kLargestCoordinate))
       user_error(
           "fabric {}: a ply of radius {:.3g} m reaches from {:.3g} to {:.3g} m; {:.0e} m from the middle of the "
           "scene is the most that can be traced, in finite numbers: scale the scene down",

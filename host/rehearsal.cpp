@@ -150,6 +150,8 @@ void Rehearsal::read_reports() {
     reported_.notify_all();
   }
   const std::lock_guard lock(mutex_);  // the children are gone: the rest is compiled here
+  for (const int child : children_) waitpid(child, nullptr, 0);
+  children_.clear();
   compiled_.assign(compiled_.size(), true);
   reported_.notify_all();
 }
@@ -178,8 +180,12 @@ Rehearsal::~Rehearsal() {
     next_ = parts_.size();
   }
   for (size_t i = dropped; i < parts_.size(); ++i) parts_[i].done.set_value();
-  for (const int child : children_) kill(child, SIGKILL);
-  for (const int child : children_) waitpid(child, nullptr, 0);
+  {
+    const std::lock_guard lock(mutex_);
+    for (const int child : children_) kill(child, SIGKILL);
+    if (reports_ < 0 || threads_.empty())
+      for (const int child : children_) waitpid(child, nullptr, 0);
+  }
   for (auto& thread : threads_) thread.join();  // the pipe has ended
   if (reports_ >= 0) close(reports_);
   if (shared_) munmap(shared_, sizeof(Shared));

@@ -62,6 +62,7 @@ class Job {
   }
 
   Rendered run(const World& world) {
+    if (options_.ready) options_.ready();
     start_ = Clock::now();
     on_every_device([&](uint32_t d) {
       try {

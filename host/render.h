@@ -17,6 +17,7 @@ struct RenderOptions {
   bool count_cpu_time = false;  ///< stages by CPU time: see Wavefront::count_cpu_time
   RayRecord* record = nullptr;  ///< keeps the rays that are sent
   std::filesystem::path kernel_dir;
+  std::function<void()> ready;  ///< called when all programs are built, before the first ray
 };
 
 /// Paths in flight on a device: what the options say, else the scene, else the device's table of traits.

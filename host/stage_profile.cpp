@@ -22,7 +22,9 @@ std::vector<StageProfile> profile_stages(const Features& features, const WaveCou
       p.items = std::max(p.items, found->second.items);  // kernels of one stage share their items
     }
     if (p.launches == 0) continue;
-    const TraversalCost none, &traversal = p.stage.starts_with("intersect") ? path : p.stage == "connect" ? shadow : none;
+    const TraversalCost none, &traversal = p.stage.starts_with("intersect") ? path
+                                           : p.stage == "connect"           ? shadow
+                                                                            : none;
     p.bytes_per_item = stage.bytes_per_item + traversal.bytes;
     p.operations_per_item = stage.operations_per_item + traversal.operations;
     if (rates.bytes_per_second > 0 && rates.operations_per_second > 0)

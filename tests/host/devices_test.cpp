@@ -170,12 +170,12 @@ TEST(MemoryNeeds, OneBufferThatIsTooLargeIsNamed) {
   Fabric fabric;
   fabric.anchors.resize(1000);
   world.fabrics.push_back(fabric);
-  device.traits().max_alloc_bytes = 1000 * W_FRAME_WORDS * 4 - 1;
+  device.traits().max_alloc_bytes = 1000 * sizeof(WAnchor) - 1;
   auto& traits = device.traits();
   const auto needs = memory_needs(world, Features{}, 64, traits);
   const std::string line = user_message([&] { require_memory(device, needs); });
-  EXPECT_TRUE(contains(line, "holds at most 0.0 MB in one buffer, ply vertices would need 0.0 MB; use fewer repeats"));
-  traits.max_alloc_bytes = 1000 * W_FRAME_WORDS * 4;
+  EXPECT_TRUE(contains(line, "holds at most 0.0 MB in one buffer, warp and pack would need 0.0 MB; use fewer repeats"));
+  traits.max_alloc_bytes = 1000 * sizeof(WAnchor);
   require_memory(device, needs);
 }
 

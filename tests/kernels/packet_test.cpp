@@ -40,6 +40,9 @@ void expect_the_same_on(const Strands& strands, const char* name) {
   const Box& bounds = tracer.tree().bounds;
   expect_the_same(tracer, camera_rays(bounds, 96, 0.8), "wide");
   expect_the_same(tracer, camera_rays(bounds, 96, 0.02), "narrow");
+  std::vector<Ray> holed = camera_rays(bounds, 96, 0.1);
+  for (size_t i = 0; i < holed.size(); i += 5) holed[i].d[i % 3] = NAN;
+  expect_the_same(tracer, holed, "some not numbers");
   std::vector<Ray> loose = primary_rays(bounds, 5003, 3);  // not a multiple of the packet, all octants
   expect_the_same(tracer, loose, "all ways");
   const std::vector<Hit> hits = tracer.trace(loose, kWide);
