@@ -21,7 +21,6 @@ uint32_t leaf_stride(const PlyPatch& patch) { return ((patch.intervals + 3) * pa
 constexpr uint32_t kTail = W_LEAF_LANES + 3 * 8;
 
 void write_header(const PlyPatch& patch, uint32_t* leaf) {
-  const bool open = !patch.ghost_ends;
   const uint32_t lanes = patch.intervals * patch.plies;
   leaf[W_LEAF_RADIUS] = std::bit_cast<uint32_t>(patch.radius);
   leaf[W_LEAF_SEGMENT] = patch.first_vertex + patch.first;
@@ -32,8 +31,6 @@ void write_header(const PlyPatch& patch, uint32_t* leaf) {
   leaf[W_LEAF_CELL] = patch.cell;
   leaf[W_LEAF_FABRIC] = patch.fabric;
   leaf[W_LEAF_PLY] = patch.first_ply;
-  leaf[W_LEAF_ENDS] =
-      (open && patch.first == 0 ? 1u : 0u) | (open && patch.first + patch.intervals + 1 == patch.count ? 2u : 0u);
 }
 
 // Leaf by leaf in pieces, so that the host never holds all leaves.
@@ -50,9 +47,20 @@ void write_headers(const Device& device, std::span<const PlyPatch> patches, cons
   }
 }
 
+void place_leaves(const Device& device, uint32_t nodes, const PlyTree& tree) {
+  cl::Kernel place(build_program(device, "pack.cl"), "place_leaves");
+  place.setArg(0, tree.nodes.cl());
+  place.setArg(1, tree.leaves.cl());
+  place.setArg(2, uint32_t(tree.leaves.count() / 4));
+  place.setArg(3, nodes);
+  device.queue().enqueueNDRangeKernel(place, cl::NullRange, device.large_global(size_t(nodes) * W_NODE_WIDTH),
+                                      device.local());
+}
+
 void refuse_if_too_far(const PlyPatch& patch, const Box& box) {
   for (int k = 0; k < 3; ++k)
-    if (!(box.lo[k] <= box.hi[k] && box.lo[k] >= -kLargestCoordinate && box.hi[k] <= kLargestCoordinate && patch.radius <= kLargestCoordinate))
+    if (!(box.lo[k] <= box.hi[k] && box.lo[k] >= -kLargestCoordinate && box.hi[k] <= kLargestCoordinate &&
+          patch.radius <= kLargestCoordinate))
       user_error(
           "fabric {}: a ply of radius {:.3g} m reaches from {:.3g} to {:.3g} m; {:.0e} m from the middle of the "
           "scene is the most that can be traced, in finite numbers: scale the scene down",
@@ -120,8 +128,9 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
     for (const PlyPatch& patch : patches) cells.push_back(patch.cell);
   const WideTree wide = build_wide_tree(boxes, tree.leaf_offset, cells, group_box);
   tree.nodes = Buffer<uint32_t>(device, wide.words);
+  place_leaves(device, uint32_t(wide.nodes()), tree);
   tree.node_cell = Buffer<uint32_t>(device, group_box.empty() ? std::vector<uint32_t>{} : wide.node_cell);
-  if (updatable) tree.refit = std::make_unique<PlyRefit>(device, runs, positions, tree.leaf_offset, wide, tree);
+  if (updatable) tree.refit = std::make_unique<PlyRefit>(device, runs, positions, wide, tree);
   tree.build_seconds = now() - start - tree.pack_seconds;
   return tree;
 }
@@ -134,7 +143,7 @@ void refit(const Device& device, PlyTree& tree) {
   tree.bounds = Box{};
   for (int k = 0; k < 3; ++k)
     for (int slot = 0; slot < W_NODE_WIDTH; ++slot) {
-      if (root[96 + slot] == W_NONE) continue;
+      if (root[W_NODE_CHILD + slot] == W_NONE) continue;
       const float lo = std::bit_cast<float>(root[16 * k + slot]), hi = std::bit_cast<float>(root[48 + 16 * k + slot]);
       if (!(lo >= -kLargestCoordinate && hi <= kLargestCoordinate))
         user_error(

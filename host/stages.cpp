@@ -50,7 +50,7 @@ std::vector<Stage> geometry_stages(const Features& f) {
            .because = "bounds of procedural leaves",
            .before_rays = true},
           {.file = "pack.cl",
-           .kernels = {"pack_leaves"},
+           .kernels = {"pack_leaves", "place_leaves"},
            .used = f.mesh_warp || f.stored_lattice,
            .because = "leaves and bounds",
            .before_rays = true}};
