@@ -36,6 +36,7 @@ struct FabricSpec {
   FibreRecipe fibres;  ///< what its plies are made of
   FlyawaySpec flyaways;
   bool places = false;  ///< fill Fabric::place
+  bool cell_lists = true;  ///< fill Fabric::cell_triangles and cell_segments
 };
 
 /// Largest distance of an explicit fibre's polyline from its curve, fibre radii.
@@ -116,8 +117,8 @@ struct Fabric {
   std::vector<uint32_t> chart_of_triangle;
   std::vector<Patch> patches;  ///< sorted by cell
   std::vector<UvGrid> grids;   ///< per chart
-  Csr cell_triangles;          ///< triangles that cover the cell (UV overlap)
-  Csr cell_segments;           ///< segments that touch the cell: vertex ids of their starts
+  Csr cell_triangles;          ///< where FabricSpec::cell_lists: triangles that cover the cell (UV overlap)
+  Csr cell_segments;           ///< and segments that touch it: vertex ids of their starts
   struct Report {
     size_t full_yarns = 0, runs = 0, segments = 0, vertices = 0;
     size_t plies = 0, fibres = 0;     ///< curves of each kind
@@ -139,7 +140,8 @@ size_t estimate_segments(const BaseMesh& mesh, const Pattern& pattern, const Fab
 
 /// Knits the pattern over the mesh: charts, scale, tiling and stitching, plies, cutting at borders (half a stitch past
 /// them), anchors, patches, UV grid with CSR lists. Throws a user error when the tile is larger than the cloth, the
-/// twist, radius or period is not usable, or nothing lies on the cloth.
-Fabric knit_fabric(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spec);
+/// twist, radius or period is not usable, or nothing lies on the cloth. The same on any number of threads (0: as many
+/// as the machine has cores).
+Fabric knit_fabric(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spec, unsigned threads = 0);
 
 }  // namespace wale
