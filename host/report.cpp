@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "geom/uv_grid.h"
 #include "host/stages.h"
 
 namespace wale {
