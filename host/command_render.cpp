@@ -190,6 +190,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
     stats.start = start.steps();
     write_stats(stats, args.stats);
   }
+  if (!stop_requested()) rehearsal.finish();  // a render shorter than that would leave it to each one after it
   const double rays = double(r.counts.primary + r.counts.bounce + r.counts.shadow);
   if (!args.quiet)
     fmt::print(stderr, "{} samples per pixel in {}, {:.2f} Mrays/s\n", r.samples, duration_text(r.seconds),

@@ -12,6 +12,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <exception>
+#include <tuple>
 
 #include "geom/error.h"
 #include "host/program.h"
@@ -23,6 +24,7 @@ struct Rehearsal::Part {
   ProgramText text;
   std::vector<std::string> kernels;
   size_t items = 1;
+  bool can_wait = false;
   std::promise<void> done;
 };
 
@@ -67,7 +69,8 @@ static ProgramText text_of(const DeviceTraits& traits, const Stage& stage, const
                            : program_text(traits, stage.file, plan.options, plan.kernel_dir);
 }
 
-// Parts of all devices in one order, the same in every process: first what is needed first, then the longest.
+// Parts of all devices in one order, the same in every process: first what is needed first, then the
+// longest, what can wait last.
 static std::vector<Rehearsal::Part> parts_of(const std::vector<Device>& devices, const Rehearsal::PlanOf& plan_of) {
   std::vector<Rehearsal::Part> parts;
   for (const Device& device : devices) {
@@ -80,9 +83,11 @@ static std::vector<Rehearsal::Part> parts_of(const std::vector<Device>& devices,
       part.text = text_of(device.traits(), stage, plan);
       part.kernels = stage.kernels;
       part.items = stage.before_rays ? Device::kLargeGrid : 1;
+      part.can_wait = stage.can_wait;
     }
     std::stable_sort(parts.begin() + std::ptrdiff_t(first), parts.end(), [](const auto& a, const auto& b) {
-      return std::pair(b.items, b.text.source.size()) < std::pair(a.items, a.text.source.size());
+      return std::tuple(b.items, a.can_wait, b.text.source.size()) <
+             std::tuple(a.items, b.can_wait, a.text.source.size());
     });
   }
   return parts;
@@ -156,6 +161,7 @@ void Rehearsal::begin(const std::vector<Device>& devices) {
     const std::lock_guard lock(parts_[i].device.programs().mutex);
     parts_[i].device.programs().ahead.emplace(parts_[i].text.key(), parts_[i].done.get_future());
   }
+  ended_ = reports_ < 0;
   if (reports_ >= 0) threads_.emplace_back([this] { read_reports(); });
   const size_t builders = std::min<size_t>(std::max(1u, std::thread::hardware_concurrency()), parts_.size());
   for (size_t i = 0; i < builders; ++i) threads_.emplace_back([this] { build_next(); });
@@ -174,7 +180,13 @@ void Rehearsal::read_reports() {
   for (const int child : children_) waitpid(child, nullptr, 0);
   children_.clear();
   compiled_.assign(compiled_.size(), true);
+  ended_ = true;
   reported_.notify_all();
+}
+
+void Rehearsal::finish() {
+  std::unique_lock lock(mutex_);
+  reported_.wait(lock, [&] { return ended_; });
 }
 
 void Rehearsal::build_next() {

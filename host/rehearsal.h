@@ -39,6 +39,8 @@ class Rehearsal {
   void begin(const std::vector<Device>& devices);
   /// True where a note said that everything is compiled already.
   bool cached() const { return cached_; }
+  /// Waits until the children have compiled everything, or have failed.
+  void finish();
   /// Drops what has not begun. Children are killed.
   ~Rehearsal();
   Rehearsal(const Rehearsal&) = delete;
@@ -66,6 +68,7 @@ class Rehearsal {
   std::vector<bool> compiled_;  ///< by a child
   size_t next_ = 0;
   bool dropped_ = false;  ///< nobody waits any more
+  bool ended_ = true;     ///< no child compiles
   std::vector<std::thread> threads_;
 };
 

@@ -63,11 +63,13 @@ std::vector<Stage> wavefront_stages(const Features& f) {
   return {
       {"stages/generate.cl", {"generate"}, true, "camera rays", 2 * kWord + kRay + 2 * kVec},
       {"stages/intersect.cl", {"intersect"}, true, "nearest hits", kWord + kRay + kVec + kUv + kWord},
-      {"stages/intersect_packets.cl",
-       {"intersect_packets"},
-       f.packets(),
-       f.packets() ? "nearest hits of camera rays, many at once" : "vectors or local stage do not suit packets",
-       kWord + kRay + kVec + kUv + kWord},
+      {.file = "stages/intersect_packets.cl",
+       .kernels = {"intersect_packets"},
+       .used = f.packets(),
+       .because =
+           f.packets() ? "nearest hits of camera rays, many at once" : "vectors or local stage do not suit packets",
+       .bytes_per_item = kWord + kRay + kVec + kUv + kWord,
+       .can_wait = true},
       {"stages/compact.cl", {"compact_count", "compact_scan", "compact_scatter"}, true, "queues", 5 * kWord},
       {"stages/miss.cl",
        {"miss"},

@@ -15,6 +15,7 @@ struct Stage {
   double bytes_per_item = 0;  ///< of path state, lists and stored geometry that an item reads and writes
   double operations_per_item = 0;  ///< of floats; 0: not counted
   bool before_rays = false;  ///< runs once, on the scene's geometry; has no variants
+  bool can_wait = false;     ///< another stage does its work, as well but slower, until it is compiled
 };
 
 /// What makes the scene's plies ready to be traced.

@@ -35,6 +35,7 @@ Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Featu
       scene_(scene),
       features_(features),
       camera_(camera),
+      kernel_dir_(kernel_dir),
       pool_(std::max(64u, pool)),
       film_(device, camera.width, camera.height, features.aovs) {
   const auto vec = [&](Buffer<w_float4>& buffer, size_t count) {
@@ -57,12 +58,35 @@ Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Featu
   ints(chunk_, (pool_ / kChunk + 1) * bins());
   ints(queue_counts_, kQueueCounts);
   vec(aov_, features_.aovs ? size_t(pool_) * 4 : 0);
-  build_programs(kernel_dir);
+  build_programs();
 }
 
-void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
+cl_uint Wavefront::bind_path(cl::Kernel& k, cl_uint first) const {
+  set_args(k, first, ray_o_.cl(), ray_l_.cl(), ray_d_.cl(), weight_.cl(), hit_.cl(), hit_uv_.cl(), radiance_.cl(),
+           shadow_o_.cl(), shadow_l_.cl(), shadow_d_.cl(), shadow_c_.cl(), mask_.cl());
+  return first + 12;
+}
+
+void Wavefront::bind_intersect(const char* name) { scene_.bind_scene(kernel(name), bind_path(kernel(name), 1)); }
+
+void Wavefront::take_packets() {
+  if (!waiting_ || is_being_compiled(device_, waiting_->file, features_.options(), kernel_dir_)) return;
+  const cl::Program program = build_program(device_, waiting_->file, features_.options(), kernel_dir_);
+  kernels_["intersect_packets"] = cl::Kernel(program, "intersect_packets");
+  bind_intersect("intersect_packets");
+  waiting_.reset();
+}
+
+void Wavefront::build_programs() {
   std::vector<Stage> stages = wavefront_stages(features_);
   std::erase_if(stages, [](const Stage& stage) { return !stage.used; });
+  const auto wait = std::find_if(stages.begin(), stages.end(), [&](const Stage& stage) {
+    return stage.can_wait && is_being_compiled(device_, stage.file, features_.options(), kernel_dir_);
+  });
+  if (wait != stages.end()) {
+    waiting_ = *wait;
+    stages.erase(wait);
+  }
 
   // One thread per stage, where the driver bears it: compilation is the whole of the start-up time.
   const auto policy = device_.traits().parallel_builds ? std::launch::async : std::launch::deferred;
@@ -71,7 +95,7 @@ void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
   for (const auto& stage : stages)
     builds.push_back(std::async(policy, [&, file = stage.file] {
       const auto start = Clock::now();
-      cl::Program program = build_program(device_, file, features_.options(), kernel_dir);
+      cl::Program program = build_program(device_, file, features_.options(), kernel_dir_);
       return std::pair(program, std::chrono::duration<double>(Clock::now() - start).count());
     }));
   for (size_t i = 0; i < stages.size(); ++i) {
@@ -81,16 +105,12 @@ void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
   }
 
   // Arguments that never change are set once; `first` is the index behind WFrame.
-  const auto path = [&](cl::Kernel& k, cl_uint first) {
-    set_args(k, first, ray_o_.cl(), ray_l_.cl(), ray_d_.cl(), weight_.cl(), hit_.cl(), hit_uv_.cl(), radiance_.cl(),
-             shadow_o_.cl(), shadow_l_.cl(), shadow_d_.cl(), shadow_c_.cl(), mask_.cl());
-    return first + 12;
-  };
+  const auto path = [&](cl::Kernel& k, cl_uint first) { return bind_path(k, first); };
   auto& generate = kernel("generate");
   generate.setArg(1, camera_);
   set_args(generate, path(generate, 2), spare_list_.cl(), queue_counts_.cl());
   for (const char* name : {"intersect", "intersect_packets"})
-    if (kernels_.contains(name)) scene_.bind_scene(kernel(name), path(kernel(name), 1));
+    if (kernels_.contains(name)) bind_intersect(name);
   auto& miss = kernel("miss");
   cl_uint next = scene_.bind_lights(miss, path(miss, 1));
   set_args(miss, next, aov_.cl(), miss_list_.cl(), queue_counts_.cl(), kHits + 2);
@@ -175,6 +195,7 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
   frame.samples_before = first_sample;
   frame.samples_in_wave = samples;
   frame.paths = pixels * samples;
+  take_packets();
   set_frame(frame);
   const bool recording = record_ && waves_ % record_->every == 0;
   ++waves_;
