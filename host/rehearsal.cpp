@@ -64,9 +64,9 @@ void build_and_launch(const Device& device, const ProgramText& text, const std::
 
 }  // namespace
 
-static ProgramText text_of(const DeviceTraits& traits, const Stage& stage, const Rehearsal::Plan& plan) {
-  return stage.before_rays ? program_text(traits, stage.file)
-                           : program_text(traits, stage.file, plan.options, plan.kernel_dir);
+static ProgramText text_of(const DeviceTraits& traits, const StageProgram& program, const Rehearsal::Plan& plan) {
+  return program.before_rays ? program_text(traits, program.file)
+                             : program_text(traits, program.file, plan.options, plan.kernel_dir);
 }
 
 // Parts of all devices in one order, the same in every process: first what is needed first, then the
@@ -76,14 +76,14 @@ static std::vector<Rehearsal::Part> parts_of(const std::vector<Device>& devices,
   for (const Device& device : devices) {
     const Rehearsal::Plan plan = plan_of(device.traits());
     const size_t first = parts.size();
-    for (const Stage& stage : plan.stages) {
-      if (!stage.used || !device.traits().parallel_builds) continue;
+    if (!device.traits().parallel_builds) continue;
+    for (const StageProgram& program : programs_of(plan.stages, device.traits().compiles_at_launch)) {
       Rehearsal::Part& part = parts.emplace_back();
       part.device = device;
-      part.text = text_of(device.traits(), stage, plan);
-      part.kernels = stage.kernels;
-      part.items = stage.before_rays ? Device::kLargeGrid : 1;
-      part.can_wait = stage.can_wait;
+      part.text = text_of(device.traits(), program, plan);
+      part.kernels = program.kernels;
+      part.items = program.before_rays ? Device::kLargeGrid : 1;
+      part.can_wait = program.can_wait;
     }
     std::stable_sort(parts.begin() + std::ptrdiff_t(first), parts.end(), [](const auto& a, const auto& b) {
       return std::tuple(b.items, a.can_wait, b.text.source.size()) <
@@ -103,8 +103,8 @@ static std::string what_is_compiled(const std::string& devices, const Rehearsal:
   for (const char* name : {"POCL_DEVICES", "WALE_KERNEL_OPTIONS"})
     if (const char* value = std::getenv(name)) all += fmt::format("\n{}={}", name, value);
   const Rehearsal::Plan plan = plan_of(some_device);
-  for (const Stage& stage : plan.stages)
-    if (stage.used) all += '\n' + text_of(some_device, stage, plan).key();
+  for (const StageProgram& program : programs_of(plan.stages, some_device.compiles_at_launch))
+    all += '\n' + text_of(some_device, program, plan).key();
   return all;
 }
 

@@ -78,30 +78,29 @@ void Wavefront::take_packets() {
 }
 
 void Wavefront::build_programs() {
-  std::vector<Stage> stages = wavefront_stages(features_);
-  std::erase_if(stages, [](const Stage& stage) { return !stage.used; });
-  const auto wait = std::find_if(stages.begin(), stages.end(), [&](const Stage& stage) {
-    return stage.can_wait && is_being_compiled(device_, stage.file, features_.options(), kernel_dir_);
+  auto programs = programs_of(wavefront_stages(features_), device_.traits().compiles_at_launch);
+  const auto wait = std::find_if(programs.begin(), programs.end(), [&](const StageProgram& program) {
+    return program.can_wait && is_being_compiled(device_, program.file, features_.options(), kernel_dir_);
   });
-  if (wait != stages.end()) {
+  if (wait != programs.end()) {
     waiting_ = *wait;
-    stages.erase(wait);
+    programs.erase(wait);
   }
 
-  // One thread per stage, where the driver bears it: compilation is the whole of the start-up time.
+  // One thread per program, where the driver bears it: compilation is the whole of the start-up time.
   const auto policy = device_.traits().parallel_builds ? std::launch::async : std::launch::deferred;
   using Clock = std::chrono::steady_clock;
   std::vector<std::future<std::pair<cl::Program, double>>> builds;
-  for (const auto& stage : stages)
-    builds.push_back(std::async(policy, [&, file = stage.file] {
+  for (const auto& one : programs)
+    builds.push_back(std::async(policy, [&, file = one.file] {
       const auto start = Clock::now();
       cl::Program program = build_program(device_, file, features_.options(), kernel_dir_);
       return std::pair(program, std::chrono::duration<double>(Clock::now() - start).count());
     }));
-  for (size_t i = 0; i < stages.size(); ++i) {
+  for (size_t i = 0; i < programs.size(); ++i) {
     auto [program, seconds] = builds[i].get();
-    counts_.program_seconds[stages[i].file] = seconds;
-    for (const auto& name : stages[i].kernels) kernels_[name] = cl::Kernel(program, name.c_str());
+    counts_.program_seconds[programs[i].file] = seconds;
+    for (const auto& name : programs[i].kernels) kernels_[name] = cl::Kernel(program, name.c_str());
   }
 
   // Arguments that never change are set once; `first` is the index behind WFrame.

@@ -78,7 +78,7 @@ class Wavefront {
   Features features_;
   WCamera camera_;
   std::filesystem::path kernel_dir_;
-  std::optional<Stage> waiting_;  ///< the stage of packets, while it is being compiled
+  std::optional<StageProgram> waiting_;  ///< that of packets, while it is being compiled
   uint32_t pool_;
   uint64_t bytes_ = 0;
   std::map<std::string, cl::Kernel> kernels_;
