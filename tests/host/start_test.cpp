@@ -20,7 +20,7 @@ class Start : public Cli {
     const Outcome run = run_wale(args, {"POCL_CACHE_DIR=" + cache.path().string()}, 300);
     EXPECT_EQ(run.status, 0) << run.err;
     const Json programs = Json::parse(file_text(folder_ / "s.json"))["programs"];
-    EXPECT_GT(programs.size(), 3u);
+    EXPECT_GE(programs.size(), 3u);
     for (const auto& program : programs) EXPECT_EQ(program["cached"], programs[0]["cached"]);
     return programs[0]["cached"];
   }
