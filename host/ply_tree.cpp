@@ -89,9 +89,9 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
       words * 4 > device.traits().max_alloc_bytes)
     device_error("ply tree: leaves of {} MB do not fit one buffer of {}; use fewer repeats", words * 4 >> 20,
                  device.traits().name);
-  words += kTail;
-  tree.leaves = Buffer<uint32_t>(device, words);
-  tree.leaves.fill(device, 0);
+  tree.leaves = Buffer<uint32_t>(device, words + kTail);
+  constexpr uint32_t kZeros[kTail] = {};
+  device.queue().enqueueWriteBuffer(tree.leaves.cl(), CL_TRUE, words * 4, sizeof(kZeros), kZeros);
   std::vector<uint32_t> run_of;
   run_of.reserve(4 * patches.size());
   for (size_t i = 0; i < patches.size(); ++i)
