@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """calibrate.py WALE NAME ...: the colour of each peer's yarn that gives the picture "close" the mean of Wale's.
 
-Prints what belongs into yarn_colours.py. A colour is multiplied by the ratio of the means a few times, kept within 0.005 and
-0.995."""
+Prints what belongs into yarn_colours.py. A colour is multiplied by the ratio of the means a few times, kept within
+0.005 and 0.995."""
 import os
 import subprocess
 import sys

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """check_light.py WALE [NAME ...]: light, camera and path depth mean the same to all renderers.
 
-Renders the scene "book" (two diffuse pages, no cloth) with 1, 2 and all scattering events and compares the means of each
-picture's quarters with Wale's. Fails when one differs by more than 1.5 %."""
+Renders the scene "book" (two diffuse pages, no cloth) with 1, 2 and all scattering events and compares the means of
+each picture's quarters with Wale's. Fails when one differs by more than 1.5 %."""
 import os
 import subprocess
 import sys
@@ -11,7 +11,9 @@ import tempfile
 import numpy as np
 
 from picture_files import load
+from prepare import write_pages
 from renderers import NAMES, environment, peer_command, wale_command
+from scenes import SCENES
 
 LIMIT = 0.015
 SIZE, SPP = 64, 256
@@ -28,22 +30,16 @@ def main():
     wale, names = sys.argv[1], sys.argv[2:] or NAMES
     worst = 0.0
     with tempfile.TemporaryDirectory() as folder:
+        write_pages(SCENES["book"], os.path.join(folder, "book.obj"))
         for depth in [1, 2, 12]:
             means = {}
             for name in dict.fromkeys(["wale", *names]):
                 out = os.path.join(folder, name.replace(" ", "_") + (".exr" if name == "wale" else ".npy"))
                 command = (wale_command(wale, "book", out, SIZE, SPP, 1, depth, folder) if name == "wale" else
                            peer_command(name, "book", out, SIZE, SPP, 1, depth, folder))
-                if name == "wale":
-                    from scenes import SCENES, pages
-                    corners, triangles = pages(SCENES["book"])
-                    with open(os.path.join(folder, "book.obj"), "w", encoding="ascii") as file:
-                        file.writelines("v %g %g %g\n" % tuple(c) for c in corners)
-                        file.writelines("f %d %d %d\n" % tuple(i + 1 for i in t) for t in triangles)
                 done = subprocess.run(command, env=environment(name), capture_output=True, text=True)
                 if done.returncode:
-                    print(f"{name}: {(done.stderr or done.stdout).strip().splitlines()[-1]}")
-                    continue
+                    sys.exit(f"{name}: {(done.stderr or done.stdout or 'failed').strip().splitlines()[-1]}")
                 means[name] = quarters(load(out))
             for name, mean in means.items():
                 ratio = mean / means["wale"] - 1

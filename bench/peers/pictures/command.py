@@ -3,6 +3,7 @@ import argparse
 import os
 
 from scenes import DEPTH, SCENES
+from yarn_colours import ROUGHNESS
 
 
 def arguments(doc):
@@ -17,6 +18,7 @@ def arguments(doc):
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--option", default="", help="what else the renderer can be asked for, see its script")
     parser.add_argument("--colour", type=float, nargs=3, help="of the yarn, in the renderer's own terms")
+    parser.add_argument("--roughness", type=float, default=ROUGHNESS, help="of Mitsuba's and Cycles' hair")
     args = parser.parse_args()
     args.base = os.path.join(args.data, args.scene)
     return args, SCENES[args.scene]

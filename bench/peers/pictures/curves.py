@@ -3,7 +3,7 @@ import numpy as np
 
 
 def read_mitsuba_text(path):
-    """Curves of a text file with "x y z radius" a line and empty lines between curves: (points n x 3, radii n, sizes)."""
+    """Curves of a text file, "x y z radius" a line, empty lines between curves: (points n x 3, radii n, sizes)."""
     with open(path, encoding="ascii") as file:
         blocks = [block for block in file.read().split("\n\n") if block.strip()]
     values = [np.array(block.split(), dtype=np.float64).reshape(-1, 4) for block in blocks]

@@ -1,6 +1,6 @@
-"""Noise of a renderer from pictures that differ in the seed alone: the variance of a pixel over the square of the picture
-around it, averaged over the channels. The plain mean over all pixels counts fireflies in full; the other one, the median
-over blocks of 8 x 8 pixels, shows what most of the picture looks like."""
+"""Noise of a renderer from pictures that differ in the seed alone: the variance of a pixel over the square of the
+picture around it, averaged over the channels. The plain mean over all pixels counts fireflies in full; the other
+one, the median over blocks of 8 x 8 pixels, shows what most of the picture looks like."""
 import itertools
 
 import numpy as np
@@ -27,7 +27,7 @@ def relative_variance(a, b):
     relative = ((a - b) ** 2 / 2 / surroundings((a + b) / 2) ** 2).mean(axis=2)
     h, w = (n // BLOCK * BLOCK for n in relative.shape)
     blocks = relative[:h, :w].reshape(h // BLOCK, BLOCK, w // BLOCK, BLOCK).mean(axis=(1, 3))
-    return relative.mean(), np.median(blocks)
+    return relative.mean(), np.median(blocks[blocks > 0])  # blocks without cloth have no noise
 
 
 def of_seeds(pictures):

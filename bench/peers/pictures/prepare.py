@@ -9,6 +9,14 @@ import curves
 from scenes import DEPTH, SCENES, pages, wale_scene
 
 
+def write_pages(scene, path):
+    """The scene's pages as OBJ, for Wale."""
+    corners, triangles = pages(scene)
+    with open(path, "w", encoding="ascii") as file:
+        file.writelines("v %g %g %g\n" % tuple(c) for c in corners)
+        file.writelines("f %d %d %d\n" % tuple(i + 1 for i in t) for t in triangles)
+
+
 def main():
     if len(sys.argv) != 3:
         sys.exit(__doc__)
@@ -17,10 +25,7 @@ def main():
     for name, scene in SCENES.items():
         base = os.path.join(folder, name)
         if "pages" in scene:
-            corners, triangles = pages(scene)
-            with open(base + ".obj", "w", encoding="ascii") as file:
-                file.writelines("v %g %g %g\n" % tuple(c) for c in corners)
-                file.writelines("f %d %d %d\n" % tuple(i + 1 for i in t) for t in triangles)
+            write_pages(scene, base + ".obj")
             continue
         with open(base + ".json", "w", encoding="utf-8") as file:
             json.dump(wale_scene(scene, 64, DEPTH, 0), file)

@@ -32,11 +32,11 @@ def shader(name, kind):
     return material, node
 
 
-def yarn(colour):
+def yarn(colour, roughness):
     material, hair = shader("yarn", "ShaderNodeBsdfHairPrincipled")
     hair.model, hair.parametrization = "CHIANG", "ABSORPTION"
-    values = {"Absorption Coefficient": yarn_colours.absorption(colour), "IOR": yarn_colours.INDEX,
-              "Roughness": yarn_colours.ROUGHNESS, "Radial Roughness": yarn_colours.ROUGHNESS, "Coat": 0.0,
+    values = {"Absorption Coefficient": yarn_colours.absorption(colour, roughness), "IOR": yarn_colours.INDEX,
+              "Roughness": roughness, "Radial Roughness": roughness, "Coat": 0.0,
               "Offset": math.radians(yarn_colours.TILT), "Random Roughness": 0.0}
     for name, value in values.items():
         hair.inputs[name].default_value = value
@@ -61,7 +61,7 @@ def cloth(args, scene):
         diffuse.inputs["Color"].default_value = [scene["pages"]["albedo"]] * 3 + [1]
     else:
         data = hair(args.base + ".npz")
-        material = yarn(args.colour or yarn_colours.CYCLES)
+        material = yarn(args.colour or yarn_colours.CYCLES, args.roughness)
     data.materials.append(material)
     bpy.context.collection.objects.link(bpy.data.objects.new("cloth", data))
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Mitsuba 3: `linearcurve` with the `hair` BSDF. --option is the variant, llvm_ad_rgb or scalar_rgb."""
+"""Mitsuba 3: `linearcurve` with the `hair` BSDF, stratified samples (`multijitter`: less noise here than `independent`
+and `ldsampler`). --option is the variant, llvm_ad_rgb or scalar_rgb."""
 import os
 
 import mitsuba as mi
@@ -7,7 +8,7 @@ import numpy as np
 
 import yarn_colours
 from command import arguments
-from scenes import ENVIRONMENT, light_corners, pages
+from scenes import ENVIRONMENT, pages
 
 
 def rgb(value):
@@ -32,9 +33,9 @@ def cloth(args, scene):
     colour = args.colour or yarn_colours.MITSUBA
     return {"type": "linearcurve", "filename": os.path.abspath(args.base + ".txt"),
             "bsdf": {"type": "hair", "int_ior": yarn_colours.INDEX, "ext_ior": 1.0,
-                     "longitudinal_roughness": yarn_colours.ROUGHNESS,
-                     "azimuthal_roughness": yarn_colours.ROUGHNESS,
-                     "scale_tilt": yarn_colours.TILT, "sigma_a": rgb(yarn_colours.absorption(colour))}}
+                     "longitudinal_roughness": args.roughness,
+                     "azimuthal_roughness": args.roughness,
+                     "scale_tilt": yarn_colours.TILT, "sigma_a": rgb(yarn_colours.absorption(colour, args.roughness))}}
 
 
 def quad_light(light):
@@ -63,7 +64,7 @@ def main():
                                                               up=camera["up"]),
                    "film": {"type": "hdrfilm", "width": args.size, "height": args.size, "rfilter": {"type": "box"},
                             "pixel_format": "rgb", "component_format": "float32"},
-                   "sampler": {"type": "independent", "sample_count": args.spp}}})
+                   "sampler": {"type": "multijitter", "sample_count": args.spp}}})
     np.save(args.out, np.array(mi.render(world, spp=args.spp, seed=args.seed)).astype(np.float32))
 
 

@@ -29,10 +29,12 @@ def wale_command(wale, scene, out, size, spp, seed, depth=DEPTH, data="out/pictu
     return command + (["--stats", stats] if stats else [])
 
 
-def peer_command(name, scene, out, size, spp, seed, depth=DEPTH, data="out/pictures", colour=None):
+def peer_command(name, scene, out, size, spp, seed, depth=DEPTH, data="out/pictures", colour=None, roughness=None):
     script, option = PEERS[name]
     command = [sys.executable, os.path.join(HERE, script), scene, out, "--data", data, "--size", str(size), "--spp",
                str(spp), "--seed", str(seed), "--depth", str(depth), "--option", option]
+    if roughness is not None:
+        command += ["--roughness", str(roughness)]
     return command + (["--colour", *map(str, colour)] if colour is not None else [])
 
 

@@ -38,17 +38,17 @@ def table(data):
         # Start and as many samples as Wale's noise takes.
         whole = (f["start"] + f["render"] * f["plain"] / wale["plain"]) / (wale["start"] + wale["render"])
         print(f"| {name} | {1e6 * f['render'] / paths:.2f} | {f['plain'] * data['spp']:.3f} | "
-              f"{f['blocks'] * data['spp']:.3f} | **{cost['plain']:.2f}** | {cost['blocks']:.2f} | {cost['wall']:.2f} | "
-              f"{f['start']:.1f} ({f['start_wall']:.1f}) | {whole:.2f} | {f['peak'] / 1e9:.2f} | "
+              f"{f['blocks'] * data['spp']:.3f} | **{cost['plain']:.2f}** | {cost['blocks']:.2f} | "
+              f"{cost['wall']:.2f} | {f['start']:.1f} ({f['start_wall']:.1f}) | {whole:.2f} | {f['peak'] / 1e9:.2f} | "
               f"{' '.join(f'{m:.3f}' for m in f['mean'])} |")
 
 
 def main():
     if len(sys.argv) < 2:
         sys.exit(__doc__)
-    print("Microseconds of processor time a path without the start; relative variance of one sample, mean and median of "
-          "blocks;\ntime to equal noise over Wale's by either, and by wall time; start: processor (wall) seconds to one "
-          "sample; picture: time\nto equal noise with the start; peak memory; mean of the picture.")
+    print("Processor time a path without the start; relative variance of one sample, mean and median of blocks;\n"
+          "time to equal noise over Wale's by either, and by wall time; start: processor (wall) seconds to one\n"
+          "sample; picture: time to equal noise with the start; peak memory; mean of the picture.")
     for path in sys.argv[1:]:
         with open(path, encoding="utf-8") as file:
             table(json.load(file))

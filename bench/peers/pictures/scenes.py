@@ -6,17 +6,18 @@ DEPTH = 12
 
 ENVIRONMENT = 0.25  # constant radiance from all sides, seen by the camera
 
-# What the yarn should look like: the artist's colour of Wale's wool, and what came out nearest to it by mean of the
-# picture ("close", 12 scattering events) in the peers' materials; `calibrate.py` found the latter.
+# The artist's colour of Wale's wool; yarn_colours.py has the peers'.
 WOOL = [0.70, 0.40, 0.16]
 
 
 def swatch(side, wales):
-    return {"mesh": {"generator": "swatch", "width": side, "height": side, "nu": 16, "nv": 16}, "gauge": {"wales": wales}}
+    mesh = {"generator": "swatch", "width": side, "height": side, "nu": 16, "nv": 16}
+    return {"mesh": mesh, "gauge": {"wales": wales}}
 
 
 def drape(side, wales):
-    return {"mesh": {"generator": "draped_square", "size": side, "sphere_radius": 50, "nu": 96}, "gauge": {"wales": wales}}
+    mesh = {"generator": "draped_square", "size": side, "sphere_radius": 50, "nu": 96}
+    return {"mesh": mesh, "gauge": {"wales": wales}}
 
 
 SCENES = {
@@ -26,7 +27,7 @@ SCENES = {
         "camera": {"position": [6, -18, 57], "look_at": [0, 0, 0], "up": [0, 1, 0], "fov": 19},
         "light": {"position": [-120, 120, 180], "look_at": [0, 0, 0], "up": [0, 1, 0], "side": 120, "radiance": 16},
     },
-    # A square of cloth as it hangs over a ball (which is not there), a stitch is 3 pixels wide at 256 x 256.
+    # A square of cloth as it hangs over a ball (which is not there), a stitch is 4.6 pixels wide at 256 x 256.
     "drape": {
         "fabric": drape(185, 30),
         "camera": {"position": [110, -345, 185], "look_at": [0, 0, -25], "up": [0, 0, 1], "fov": 26},

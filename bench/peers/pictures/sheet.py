@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""sheet.py WALE FOLDER/SCENE.json OUT.jpg --seconds S: one picture per renderer, each with S processor seconds of samples.
+"""sheet.py WALE FOLDER/SCENE.json OUT.jpg --seconds S: one picture per renderer, each with S processor seconds of
+samples.
 
 The samples follow from the times that measure.py kept; start, loading and building come on top. --names chooses."""
 import argparse
@@ -17,7 +18,8 @@ from report import figures
 
 
 def eight_bit(picture):
-    encoded = np.where(picture <= 0.0031308, 12.92 * picture, 1.055 * np.maximum(picture, 0.0031308) ** (1 / 2.4) - 0.055)
+    upper = 1.055 * np.maximum(picture, 0.0031308) ** (1 / 2.4) - 0.055
+    encoded = np.where(picture <= 0.0031308, 12.92 * picture, upper)
     return (255 * np.clip(encoded, 0, 1) + 0.5).astype(np.uint8)
 
 
