@@ -6,6 +6,8 @@
 #include "stages/scene_args.clh"
 #include "sampling/dimensions.clh"
 
+W_CALL int w_connects(const WScene* scene, const WRay* ray) { return !w_occluded(scene, ray); }
+
 __kernel void connect(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, __global const uint* list,
                       __global const uint* counts, uint count_index, uint depth) {
   const uint i = get_global_id(0);
@@ -15,5 +17,5 @@ __kernel void connect(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, __global cons
   WRay ray = w_slot_ray(shadow_o, shadow_l, shadow_d, slot);
   ray.tmax = shadow_d[slot].w;
   ray.key = w_ray_key(w_slot_pixel(&frame, slot), w_slot_sample(&frame, slot), depth, W_RAY_SHADOW, frame.seed);
-  if (!w_occluded(&scene, &ray)) radiance[slot].xyz += shadow_c[slot].xyz;
+  if (w_connects(&scene, &ray)) radiance[slot].xyz += shadow_c[slot].xyz;
 }
