@@ -8,6 +8,7 @@
 #include "geom/fibre_section.h"
 #include "geom/flat_knit.h"
 #include "geom/flyaways.h"
+#include "geom/lattice.h"
 
 namespace wale {
 
@@ -21,6 +22,9 @@ struct FabricScale {
 /// How much of a ply is shown: nothing but the tube; as KNIT21, or maps of the fibres on it; the fibres themselves.
 /// The first three share one geometry and differ in shading alone.
 enum class Detail { none, paper, maps, fibres };
+
+/// How the points of a fabric are held: kept, or warped anew from a lattice wherever a ray needs them.
+enum class Storage { automatic, stored, procedural };
 
 struct FabricSpec {
   std::string name;
@@ -36,6 +40,8 @@ struct FabricSpec {
   FibreRecipe fibres;  ///< what its plies are made of
   FlyawaySpec flyaways;
   bool places = false;  ///< fill Fabric::place
+  Storage storage = Storage::automatic;
+  int lattice = 0;  ///< cells along a tile's side of a lattice that takes the mesh's place in the warp; 0 = none
 };
 
 /// Largest distance of an explicit fibre's polyline from its curve, fibre radii.
@@ -118,6 +124,9 @@ struct Fabric {
   std::vector<UvGrid> grids;   ///< per chart
   Csr cell_triangles;          ///< triangles that cover the cell (UV overlap)
   Csr cell_segments;           ///< segments that touch the cell: vertex ids of their starts
+  std::vector<LatticeChart> lattice;  ///< of a regular cloth, in place of runs, anchors, patches and cells
+  bool procedural = false;            ///< it is to stay a lattice
+  double fibre_twist = 0;             ///< of a lattice: FibreRecipe::twist
   struct Report {
     size_t full_yarns = 0, runs = 0, segments = 0, vertices = 0;
     size_t plies = 0, fibres = 0;     ///< curves of each kind

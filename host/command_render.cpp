@@ -104,7 +104,7 @@ Stats stats_of(const Scene& scene, const World& world, const std::vector<RenderD
                          share.busy_seconds});
   }
   const auto bytes = on_first.bytes();
-  s.geometry["ply segments"] = {segments, bytes.at("ply leaves") + bytes.at("ply tree")};
+  s.geometry["ply segments"] = {segments, bytes.at("ply leaves") + bytes.at("ply tree") + bytes.at("lattices")};
   s.geometry["ply vertices"] = {vertices, bytes.at("ply vertices")};
   s.geometry["triangles"] = {world.triangle_count(), bytes.at("triangles")};
   s.geometry["path state"] = {pool, path_bytes};

@@ -81,7 +81,15 @@ int run_plan(const SceneArgs& args, const std::filesystem::path& json, const Loa
 
 int run_export(const SceneArgs& args, const std::filesystem::path& output, const Loaders& loaders) {
   require_export_path(output);
-  const Scene scene = read_scene(args.scene, args.set);
+  Scene scene = read_scene(args.scene, args.set);
+  for (FabricScene& fabric : scene.fabrics) {
+    if (fabric.spec.lattice > 0 || fabric.spec.storage == Storage::procedural)
+      user_error(
+          "export: fabric \"{}\" is held as a lattice, which is not written; give \"storage\": \"stored\" and no "
+          "\"lattice\"",
+          fabric.spec.name);
+    fabric.spec.storage = Storage::stored;
+  }
   const Device device = one_device(args);
   const World world = world_of(scene, loaders, args.quiet);
   const std::vector<float> points = FabricWarp(device, fabric_inputs(world), world.origin).points().read(device);

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "geom/error.h"
 
@@ -135,21 +136,8 @@ FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> i
                             bool updatable) {
   FabricDevice out;
   const double start = now();
-  auto warp = std::make_unique<FabricWarp>(device, inputs, origin);
-  out.warp_seconds = now() - start;
-  out.frames = warp->frames();
-  out.vertex_count = warp->vertices();
-  out.triangle_count = warp->base_triangles().count() / 3;
-  const Buffer<float> points = warp->points();
-  if (stage != LocalStage::exact) {
-    out.base_positions = warp->base_positions();
-    out.base_indices = warp->base_triangles();
-  }
-  if (updatable)
-    out.warp = std::move(warp);
-  else
-    warp.reset();
   std::vector<PlyPatch> patches;
+  std::vector<LatticeInput> lattices;
   size_t curves = 0;
   uint32_t first_vertex = 0, first_triangle = 0;
   for (uint32_t f = 0; f < inputs.size(); ++f) {
@@ -158,7 +146,7 @@ FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> i
     out.first_cell.push_back(uint32_t(out.cell_count));
     out.first_triangle.push_back(first_triangle);
     first_vertex += uint32_t(fabric.anchors.size());
-    first_triangle += uint32_t(fabric.mesh.triangle.size());
+    if (fabric.lattice.empty()) first_triangle += uint32_t(fabric.mesh.triangle.size());
     std::vector<uint32_t> first_curve;  // per run, over all fabrics
     for (const PlyRun& run : fabric.runs) {
       first_curve.push_back(uint32_t(curves));
@@ -174,8 +162,37 @@ FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> i
       out.segment_count += size_t(p.intervals) * run.plies;
     }
     out.cell_count += cells_of(fabric);
+    if (!fabric.lattice.empty()) lattices.push_back({&fabric, f, inputs[f].material, inputs[f].tau});
   }
-  out.patch_count = patches.size();
+  if (!lattices.empty() && stage != LocalStage::exact)
+    user_error(
+        "fabric '{}': it is held as a lattice, which has no UV cells; use integrator.local_stage \"exact\", or "
+        "storage \"stored\" and no lattice",
+        lattices[0].fabric->name);
+  if (!lattices.empty() && updatable) bug("fabric '{}': a lattice cannot follow its mesh", lattices[0].fabric->name);
+  LatticeFabrics placed;
+  if (!lattices.empty()) placed = place_lattices(device, lattices, origin, first_vertex, curves);
+  for (const PlyPatch& p : placed.patches) out.segment_count += size_t(p.intervals) * p.plies;
+  out.segment_count += placed.segments;
+  patches.insert(patches.end(), placed.patches.begin(), placed.patches.end());
+  out.patch_count = patches.size() + placed.procedural.number.size();
+  out.vertex_count = first_vertex + placed.stored_vertices;
+  out.triangle_count = first_triangle;
+  out.tight_joints = placed.tight_joints;
+
+  auto warp = std::make_unique<FabricWarp>(device, inputs, origin, placed.stored_vertices);
+  out.frames = warp->frames();
+  const Buffer<float> points = warp->points();
+  placed.device.warp(device, placed.runs, points, out.frames);
+  out.warp_seconds = now() - start;
+  if (stage != LocalStage::exact) {
+    out.base_positions = warp->base_positions();
+    out.base_indices = warp->base_triangles();
+  }
+  if (updatable)
+    out.warp = std::move(warp);
+  else
+    warp.reset();
 
   std::vector<Box> group_boxes;
   if (stage != LocalStage::exact) {
@@ -183,11 +200,13 @@ FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> i
     for (size_t f = 0; f < inputs.size(); ++f)
       append_group_boxes(group_boxes, *inputs[f].fabric, origin, out.first_cell[f]);
   }
-  out.tree = build_ply_tree(device, patches, points, group_boxes, updatable);
+  out.tree = build_ply_tree(device, patches, points, group_boxes, updatable, std::move(placed.procedural));
+  out.lattice = std::move(placed.device);
   out.pack_seconds = out.tree.pack_seconds;
   out.build_seconds = out.tree.build_seconds;
   out.node_count = out.tree.nodes.count() / W_NODE_WORDS;
-  out.bytes = out.frames.bytes() + out.tree.leaves.bytes() + out.tree.nodes.bytes() + out.tree.node_cell.bytes();
+  out.bytes = out.frames.bytes() + out.tree.leaves.bytes() + out.tree.nodes.bytes() + out.tree.node_cell.bytes() +
+              out.lattice.bytes();
   if (updatable) out.bytes += points.bytes() + out.warp->bytes() + out.tree.refit->bytes();
   if (stage == LocalStage::exact) return out;
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "host/fabric_warp.h"
+#include "host/lattice_fabrics.h"
 #include "host/ply_tree.h"
 #include "shared/wale_types.h"
 
@@ -18,6 +19,8 @@ enum class LocalStage { exact = 0, cell = 1, ring = 2 };
 struct FabricDevice {
   Buffer<float> frames;  ///< W_FRAME_WORDS a vertex; where it lies is in the leaves
   PlyTree tree;
+  LatticeDevice lattice;             ///< of fabrics that have one
+  uint32_t tight_joints = 0;         ///< that made procedural fabrics stored, see place_lattices
   std::unique_ptr<FabricWarp> warp;  ///< of updatable fabrics
   std::vector<uint32_t> first_vertex, first_cell, first_triangle;
 

@@ -49,12 +49,13 @@ void append(WarpInput& out, const Fabric& fabric, dvec3 origin) {
 
 }  // namespace
 
-FabricWarp::FabricWarp(const Device& device, std::span<const FabricInput> inputs, dvec3 origin) {
+FabricWarp::FabricWarp(const Device& device, std::span<const FabricInput> inputs, dvec3 origin, size_t more) {
   WarpInput in;
-  for (const FabricInput& input : inputs) append(in, *input.fabric, origin);
+  for (const FabricInput& input : inputs)
+    if (input.fabric->lattice.empty()) append(in, *input.fabric, origin);
   count_ = uint32_t(in.anchors.size());
-  points_ = Buffer<float>(device, size_t(count_) * 3);
-  frames_ = Buffer<float>(device, size_t(count_) * W_FRAME_WORDS);
+  points_ = Buffer<float>(device, (count_ + more) * 3);
+  frames_ = Buffer<float>(device, (count_ + more) * W_FRAME_WORDS);
   positions_ = Buffer<float>(device, in.positions);
   triangles_ = Buffer<uint32_t>(device, in.triangles);
   if (count_ == 0) return;

@@ -22,8 +22,9 @@ struct FabricInput {
 /// unless the base meshes move.
 class FabricWarp {
  public:
-  /// Uploads and warps. `origin` is subtracted from base positions in double. Throws device errors only.
-  FabricWarp(const Device& device, std::span<const FabricInput> inputs, dvec3 origin);
+  /// Uploads and warps. `origin` is subtracted from base positions in double. Fabrics that have a lattice are left out;
+  /// `more`: vertices of theirs to leave room for behind the others'. Throws device errors only.
+  FabricWarp(const Device& device, std::span<const FabricInput> inputs, dvec3 origin, size_t more = 0);
 
   /// Carries the fabrics on to moved base meshes: three floats a mesh vertex, metres from the origin, and unit normals.
   /// Returns before the device is done; allocates nothing. Throws a user error where a number is not finite.

@@ -15,6 +15,7 @@ std::string Features::options() const {
   };
   define(plies || fibres, "W_HAS_PLIES");
   define(fibres, "W_HAS_FIBRES");
+  define(procedural, "W_HAS_PROCEDURAL");
   define(triangles, "W_HAS_TRIANGLES");
   define(spheres, "W_HAS_SPHERES");
   define(environment, "W_HAS_ENVIRONMENT");
@@ -37,6 +38,10 @@ Features analyse(const World& world, const IntegratorScene& integrator, bool aov
   for (const auto& fabric : world.fabrics) {
     f.plies |= fabric.report.plies > 0;
     f.fibres |= fabric.report.fibres > 0;
+    const bool lattice = !fabric.lattice.empty();
+    f.mesh_warp |= !lattice && !fabric.anchors.empty();
+    f.stored_lattice |= lattice && !fabric.procedural;
+    f.procedural |= fabric.procedural;
   }
   f.triangles = world.triangle_count() > 0;
   f.spheres = !world.spheres.empty();
@@ -60,6 +65,10 @@ Features foresee(const Scene& scene, bool aovs, int device_lanes) {
     f.fibres |= fibres || fabric.spec.flyaways.any();
     f.detail |= fabric.spec.detail == Detail::maps || fabric.spec.detail == Detail::paper;
     f.ply_colors |= colors_vary(yarn, fabric.color_image);
+    const bool procedural = fabric.spec.storage == Storage::procedural, lattice = fabric.spec.lattice > 0;
+    f.mesh_warp |= !lattice && !procedural;
+    f.stored_lattice |= lattice && !procedural;
+    f.procedural |= procedural;
   }
   for (const auto& object : scene.objects) {
     f.spheres |= object.kind == ObjectScene::Kind::sphere;
@@ -103,6 +112,9 @@ std::vector<Reason> explain(const World& world, const IntegratorScene& integrato
       {"fibres", f.fibres,
        f.fibres ? "detail \"fibres\" or flyaways of " + with([](const Fabric& x) { return x.report.fibres > 0; })
                 : "no fabric has detail \"fibres\" or flyaways"},
+      {"procedural storage", f.procedural,
+       f.procedural ? "fabrics: " + with([](const Fabric& x) { return x.procedural; })
+                    : "no fabric has storage \"procedural\", or one that is large and regular enough"},
       {"triangles", f.triangles,
        f.triangles ? fmt::format("{} triangles of props and lights", world.triangle_count())
                    : "no mesh, ground or quad light"},

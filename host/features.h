@@ -19,7 +19,10 @@ struct Features {
   bool detail = false;                       ///< fibres show on plies, by maps
   bool paper_lobes = false;                  ///< bodies of plies are Lambert lobes
   bool aovs = false;
-  bool ply_colors = false;  ///< colours that vary over the cloth
+  bool mesh_warp = false;       ///< some plies are warped by the base mesh itself
+  bool stored_lattice = false;  ///< some are warped by a lattice, and stored
+  bool procedural = false;      ///< some leaves keep no points
+  bool ply_colors = false;      ///< colours that vary over the cloth
   LocalStage local_stage = LocalStage::exact;
   int lanes = 1;
 
@@ -40,8 +43,9 @@ struct Reason {
 /// Stage that a scene's integrator.local_stage names.
 LocalStage local_stage(const IntegratorScene& integrator);
 Features analyse(const World& world, const IntegratorScene& integrator, bool aovs, int device_lanes);
-/// The same from the scene alone, before anything is knitted: what analyse() will say, unless a fabric turns out empty or
-/// a light's image black. For programs that are compiled ahead (host/rehearsal.h); nothing else may rest on it.
+/// The same from the scene alone, before anything is knitted: what analyse() will say, unless a fabric turns out empty
+/// or so large that it is held procedurally unasked, or a light's image black. For programs that are compiled ahead
+/// (host/rehearsal.h); nothing else may rest on it.
 Features foresee(const Scene& scene, bool aovs, int device_lanes);
 std::vector<Reason> explain(const World& world, const IntegratorScene& integrator, const Features& features);
 

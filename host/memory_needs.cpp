@@ -5,6 +5,7 @@
 
 #include "geom/error.h"
 #include "host/film_device.h"
+#include "host/lattice_fabrics.h"
 #include "host/world.h"
 
 namespace wale {
@@ -13,26 +14,38 @@ namespace {
 // Per patch of a tree of 16-wide nodes that are two thirds full.
 constexpr uint64_t kTreeBytes = W_NODE_WORDS * 4 / 10 + 4;
 // What is gone before the rays: per vertex its anchor, flags and position, per patch its run and box.
-constexpr uint64_t kWarpBytes = sizeof(WAnchor) + 1 + 12, kPackBytes = 40;
+constexpr uint64_t kWarpBytes = sizeof(WAnchor) + 1, kPackBytes = 40;
 
 std::string size_text(uint64_t bytes) {
   return bytes < 1000000000 ? fmt::format("{:.1f} MB", 1e-6 * double(bytes))
                             : fmt::format("{:.1f} GB", 1e-9 * double(bytes));
 }
 
-uint64_t leaf_words(const Patch& patch, uint32_t plies) {
-  return W_LEAF_HEADER + 3 * uint64_t(((patch.intervals + 3) * plies + 3) / 4 * 4);
+uint64_t leaf_words(uint32_t intervals, uint32_t plies) {
+  return W_LEAF_HEADER + 3 * uint64_t(((intervals + 3) * plies + 3) / 4 * 4);
 }
 
 }  // namespace
 
 std::vector<MemoryNeed> memory_needs(const World& world, const Features& features, uint32_t pool,
                                      const DeviceTraits& traits) {
-  uint64_t vertices = 0, patches = 0, leaves = 0;
+  uint64_t vertices = 0, patches = 0, leaves = 0, lattices = 0, anchors = 0;
   for (const Fabric& fabric : world.fabrics) {
     vertices += fabric.anchors.size();
+    anchors += fabric.anchors.size();
     patches += fabric.patches.size();
-    for (const Patch& patch : fabric.patches) leaves += 4 * leaf_words(patch, fabric.runs[patch.run].plies);
+    for (const Patch& patch : fabric.patches) leaves += 4 * leaf_words(patch.intervals, fabric.runs[patch.run].plies);
+    for (const LatticeChart& chart : fabric.lattice) {
+      lattices += chart.lattice.position.size() * W_LATTICE_WORDS * 4;
+      const uint32_t plies = uint32_t(chart.tile.plies);
+      const uint64_t tiles = uint64_t(chart.lattice.tiles.x) * uint64_t(chart.lattice.tiles.y);
+      for (const TileYarn& yarn : chart.tile.yarns) {
+        const uint32_t pieces = patches_of(yarn, plies), intervals = (yarn.samples + pieces - 1) / pieces;
+        patches += tiles * pieces;
+        if (!fabric.procedural) leaves += tiles * pieces * 4 * leaf_words(intervals, plies);
+      }
+    }
+    if (!fabric.procedural) vertices += lattice_vertices(fabric);
   }
   const WCamera& camera = world.camera;
   const uint64_t pixels = padded_pixels(camera.width, camera.height);
@@ -49,8 +62,9 @@ std::vector<MemoryNeed> memory_needs(const World& world, const Features& feature
                    std::min(traits.global_bytes / 2 / path_bytes, traits.max_alloc_bytes / path_buffer))},
       {"ply vertices", vertices * W_FRAME_WORDS * 4, vertices * W_FRAME_WORDS * 4, fewer},
       {"ply leaves", leaves, leaves, fewer},
+      {"lattices", lattices, lattices, "fewer repeats, a coarser gauge or fewer lattice cells"},
       {"ply tree", patches * kTreeBytes, patches * kTreeBytes, fewer},
-      {"warp and pack", vertices * kWarpBytes + patches * kPackBytes, vertices * sizeof(WAnchor), fewer},
+      {"warp and pack", anchors * kWarpBytes + vertices * 12 + patches * kPackBytes, anchors * sizeof(WAnchor), fewer},
       {"ply colours", world.ply_colors.size() * 4, world.ply_colors.size() * 4, "fewer colours"},
       {"triangles", world.triangles.size() * 4 * 2, world.triangles.size() * 4, "simpler props"},
       {"environment",

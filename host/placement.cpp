@@ -35,6 +35,8 @@ void refuse_if_rounded(const Fabric& fabric, dvec3 origin) {
                  fabric.name, run.radius);
     thinnest = std::min(thinnest, double(run.radius));
   }
+  if (!fabric.lattice.empty()) thinnest = fabric.ply_radius;
+  for (const LatticeChart& chart : fabric.lattice) highest = std::max(highest, chart.tile.highest);
   for (const Anchor& anchor : fabric.anchors) highest = std::max(highest, std::abs(double(anchor.height)));
   for (const auto& t : fabric.mesh.triangle)
     for (const uint32_t v : t)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <utility>
 
 #include "geom/error.h"
 #include "host/program.h"
@@ -61,8 +62,9 @@ void refuse_if_too_far(const PlyPatch& patch, const Box& box) {
 }  // namespace
 
 PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, const Buffer<float>& positions,
-                       std::span<const Box> group_box, bool updatable) {
+                       std::span<const Box> group_box, bool updatable, ProceduralLeaves procedural) {
   if (updatable && !group_box.empty()) bug("ply tree: a tree of cells cannot be refitted");
+  if (updatable && !procedural.number.empty()) bug("ply tree: procedural leaves cannot be refitted");
   PlyTree tree;
   const double start = now();
   size_t words = 0;
@@ -75,7 +77,8 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
     tree.leaf_offset.push_back(uint32_t(words / 4));
     words += W_LEAF_HEADER + 3 * leaf_stride(patch);
   }
-  if (words / 4 >= 1u << 28 || words * 4 > device.traits().max_alloc_bytes)
+  if (words / 4 >= (procedural.number.empty() ? 1u << 28 : W_LEAF_PROCEDURAL) ||
+      words * 4 > device.traits().max_alloc_bytes)
     device_error("ply tree: leaves of {} MB do not fit one buffer of {}; use fewer repeats", words * 4 >> 20,
                  device.traits().name);
   words += kTail;
@@ -87,7 +90,8 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
     run_of.insert(run_of.end(),
                   {tree.leaf_offset[i], patches[i].first_vertex, patches[i].count, patches[i].ghost_ends});
   write_headers(device, patches, tree);
-  std::vector<Box> boxes(patches.size());
+  std::vector<Box> boxes = std::move(procedural.box);
+  boxes.insert(boxes.begin(), patches.size(), Box{});
   const Buffer<uint32_t> runs(device, run_of);
   run_of = {};
   if (!patches.empty()) {
@@ -100,14 +104,15 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
     pack.setArg(4, uint32_t(patches.size()));
     device.queue().enqueueNDRangeKernel(pack, cl::NullRange, device.large_global(patches.size()), device.local());
     const std::vector<float> flat = box_buffer.read(device);
-    for (size_t i = 0; i < boxes.size(); ++i) {
+    for (size_t i = 0; i < patches.size(); ++i) {
       std::copy_n(flat.begin() + 6 * i, 3, boxes[i].lo);
       std::copy_n(flat.begin() + 6 * i + 3, 3, boxes[i].hi);
       refuse_if_too_far(patches[i], boxes[i]);
-      join(tree.bounds, boxes[i]);
     }
-    tree.root = 0;
   }
+  for (const Box& box : boxes) join(tree.bounds, box);
+  if (!boxes.empty()) tree.root = 0;
+  tree.leaf_offset.insert(tree.leaf_offset.end(), procedural.number.begin(), procedural.number.end());
   tree.pack_seconds = now() - start;
 
   std::vector<uint32_t> cells;

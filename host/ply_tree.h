@@ -25,11 +25,17 @@ struct PlyPatch {
   bool ghost_ends = false;
 };
 
+/// Procedural leaves: their numbers (W_LEAF_PROCEDURAL included) and boxes.
+struct ProceduralLeaves {
+  std::vector<uint32_t> number;
+  std::vector<Box> box;
+};
+
 /// Leaves and tree over patches, on the device.
 struct PlyTree {
   Buffer<uint32_t> leaves, nodes;
   Buffer<uint32_t> node_cell;         ///< for the cell stages only: see WideTree
-  std::vector<uint32_t> leaf_offset;  ///< per patch, in 16-byte units
+  std::vector<uint32_t> leaf_offset;  ///< per patch, in 16-byte units; then the numbers of procedural leaves
   uint32_t root = 0xffffffffu;        ///< W_NONE when there is no patch
   Box bounds;
   std::unique_ptr<PlyRefit> refit;  ///< of updatable trees
@@ -46,14 +52,15 @@ struct PlyTree {
 constexpr float kLargestCoordinate = 1e12f;
 
 /// Packs leaves on the device and builds the tree on the host. `positions`: x, y, z a vertex, metres; not needed
-/// afterwards. group_box: see build_wide_tree; when given, each UV cell
+/// afterwards. `procedural` leaves join the tree without being packed; they have no cells and cannot be refitted.
+/// group_box: see build_wide_tree; when given, each UV cell
 /// gets a node of its own (patches of one cell must follow one another in ascending order of cells), which the cell
 /// stages need. Without it the tree is free of cells: a fifth smaller and faster (bench/results/embree.md).
 /// `updatable`: keep what refit() needs, `positions` too.
 /// Throws a device error when a leaf buffer would not fit, and a user error when a ply reaches farther out than
 /// kLargestCoordinate, or has a vertex or radius that is no number.
 PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, const Buffer<float>& positions,
-                       std::span<const Box> group_box = {}, bool updatable = false);
+                       std::span<const Box> group_box = {}, bool updatable = false, ProceduralLeaves procedural = {});
 
 /// Lets an updatable tree, free of cells, follow what the buffer of positions that it was built from holds now; nothing
 /// is allocated. Waits for the device. Throws a user error when a ply reaches farther out than kLargestCoordinate.

@@ -1,5 +1,7 @@
 #include "host/scene_device.h"
 
+#include <algorithm>
+
 #include "geom/error.h"
 #include "host/driver_crash.h"
 #include "host/triangle_tree.h"
@@ -44,7 +46,11 @@ FabricDevice upload(const Device& device, const World& world, LocalStage stage) 
 }
 
 SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage stage)
-    : device_(device), stage_(stage), fabric_(upload(device, world, stage)) {
+    : device_(device),
+      stage_(stage),
+      procedural_(
+          std::any_of(world.fabrics.begin(), world.fabrics.end(), [](const Fabric& f) { return f.procedural; })),
+      fabric_(upload(device, world, stage)) {
   const TriangleTree tree = build_triangle_tree(corners_of(world.triangles));
   ply_materials_ = Buffer<WPlyMaterial>(device, world.ply_materials);
   fibre_details_ = Buffer<WFibreDetail>(device, world.fibres.details);
@@ -88,6 +94,11 @@ cl_uint SceneDevice::bind_scene(cl::Kernel& kernel, cl_uint first) const {
   kernel.setArg(i++, spheres_.cl());
   kernel.setArg(i++, sphere_count_);
   kernel.setArg(i++, events_.cl());
+  if (procedural_) {
+    kernel.setArg(i++, fabric_.lattice.lattice.cl());
+    kernel.setArg(i++, fabric_.lattice.tiles.cl());
+    kernel.setArg(i++, fabric_.lattice.patch_bits);
+  }
   if (stage_ != LocalStage::exact) {
     kernel.setArg(i++, fabric_.base_positions.cl());
     kernel.setArg(i++, fabric_.base_indices.cl());
@@ -120,6 +131,7 @@ std::map<std::string, uint64_t> SceneDevice::bytes() const {
   const uint64_t tree = fabric_.tree.nodes.bytes() + fabric_.tree.node_cell.bytes();
   return {{"ply vertices", frames},
           {"ply leaves", leaves},
+          {"lattices", fabric_.lattice.bytes()},
           {"ply tree", tree},
           {"triangles", triangles_.bytes() + tri_leaves_.bytes() + tri_nodes_.bytes()},
           {"environment", env_texels_.bytes() + env_cdf_.bytes()},

@@ -16,7 +16,7 @@ class SceneDevice {
   SceneDevice(const Device& device, const World& world, LocalStage stage = LocalStage::exact);
 
   /// Set the arguments of W_SCENE_PARAMS / W_LIGHT_PARAMS from `first` on; return the next free index. Kernels must be
-  /// built for the same local stage.
+  /// built for the same features.
   cl_uint bind_scene(cl::Kernel& kernel, cl_uint first) const;
   cl_uint bind_lights(cl::Kernel& kernel, cl_uint first) const;
 
@@ -41,6 +41,7 @@ class SceneDevice {
  private:
   const Device& device_;
   LocalStage stage_;
+  bool procedural_;
   FabricDevice fabric_;
   Buffer<WPlyMaterial> ply_materials_;
   Buffer<WFibreDetail> fibre_details_;

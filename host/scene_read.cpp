@@ -152,6 +152,10 @@ Detail detail_of(const std::string& word) {
                            : Detail::fibres;
 }
 
+Storage storage_of(const std::string& word) {
+  return word == "auto" ? Storage::automatic : word == "stored" ? Storage::stored : Storage::procedural;
+}
+
 FlyawaySpec flyaways_of(const JsonNode& node, const std::string& path) {
   constexpr double kPerMillimetre = 1e3;
   for (const auto& [key, most] : {std::pair{"length", kLongestFlyaway}, std::pair{"radius", kThickestFlyaway}})
@@ -176,6 +180,8 @@ FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index) {
   fabric.spec.tolerance = number_of(node, "tolerance");
   fabric.spec.flyaways = flyaways_of(node["flyaways"], path);
   fabric.spec.detail = detail_of(node["detail"].text);
+  fabric.spec.storage = storage_of(node["storage"].text);
+  fabric.spec.lattice = integer_of(node, "lattice");
   fabric.mesh = mesh_of(node["mesh"]);
   fabric.transform = transform_of(node["transform"]);
   fabric.pattern = pattern_of(node["pattern"]);

@@ -34,15 +34,24 @@ constexpr double kShadePlyOperations = 1000 + 39 * 20;
 }  // namespace
 
 std::vector<Stage> geometry_stages(const Features& f) {
-  const bool curves = f.plies || f.fibres;
   return {{.file = "warp.cl",
            .kernels = {"warp_points", "warp_normals"},
-           .used = curves,
+           .used = f.mesh_warp,
            .because = "plies on the base mesh",
+           .before_rays = true},
+          {.file = "lattice_vertices.cl",
+           .kernels = {"lattice_points", "lattice_normals"},
+           .used = f.stored_lattice,
+           .because = "plies of a lattice, stored",
+           .before_rays = true},
+          {.file = "lattice_boxes.cl",
+           .kernels = {"lattice_boxes"},
+           .used = f.procedural,
+           .because = "bounds of procedural leaves",
            .before_rays = true},
           {.file = "pack.cl",
            .kernels = {"pack_leaves"},
-           .used = curves,
+           .used = f.mesh_warp || f.stored_lattice,
            .because = "leaves and bounds",
            .before_rays = true}};
 }

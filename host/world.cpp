@@ -8,10 +8,12 @@
 #include <cmath>
 
 #include "geom/error.h"
+#include "geom/lattice_fabric.h"
 #include "geom/mesh_repair.h"
 #include "host/materials.h"
 #include "host/placement.h"
 #include "host/ply_colors.h"
+#include "host/storage.h"
 #include "host/viewpoint.h"
 
 namespace wale {
@@ -61,7 +63,30 @@ class Builder {
     world_.seconds[name] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 
+  // Colours that vary are stored per vertex; the cell stages list stored segments.
+  std::string lattice_obstacle_of_scene() const {
+    if (scene_.integrator.local_stage != "exact") return "integrator.local_stage is not \"exact\"";
+    for (const auto& fabric : scene_.fabrics)
+      if (colors_vary(scene_.materials.at(size_t(fabric.material)).yarn, fabric.color_image))
+        return fmt::format("colours vary over fabric \"{}\"", fabric.spec.name);
+    return {};
+  }
+
+  void note_lattice(const Fabric& fabric, const StorageChoice& choice) {
+    double change = 0;
+    for (const LatticeChart& chart : fabric.lattice)
+      for (const TileYarn& yarn : chart.tile.yarns) change = std::max(change, std::abs(yarn.twist_change));
+    world_.notes.push_back(
+        fmt::format("fabric \"{}\": held as a lattice of {} cell(s) along a tile's side, {} ({}); its twist changes by "
+                    "{:.3g} turns "
+                    "per metre so that tiles join",
+                    fabric.name, fabric.lattice[0].lattice.cells,
+                    choice.storage == Storage::procedural ? "points warped where needed" : "points stored",
+                    choice.because, change));
+  }
+
   void knit_all() {
+    const std::string obstacle = lattice_obstacle_of_scene();
     for (const auto& fabric : scene_.fabrics) {
       BaseMesh mesh = load_mesh(fabric.mesh, loaders_);
       require_uv(mesh);
@@ -75,11 +100,15 @@ class Builder {
       FabricSpec spec = fabric.spec;
       spec.fibres = fibre_recipe(yarn);
       spec.places = colors_need_places(yarn, fabric.color_image);
+      const StorageChoice choice = choose_storage(mesh, pattern, spec, obstacle);
+      spec.storage = choice.storage;
       refuse_if_too_large(mesh, pattern, spec);
       world_.fabric_mesh_reports.push_back(validate(mesh));
       part_opposed_seams(mesh);
       bounds_.add(mesh), fabric_bounds_.add(mesh);
-      world_.fabrics.push_back(knit_fabric(std::move(mesh), pattern, spec));
+      world_.fabrics.push_back(choice.lattice ? knit_lattice(std::move(mesh), pattern, spec)
+                                              : knit_fabric(std::move(mesh), pattern, spec));
+      if (choice.lattice) note_lattice(world_.fabrics.back(), choice);
       world_.fabric_material.push_back(uint32_t(world_.ply_materials.size()));
       world_.ply_materials.push_back(ply_material(yarn));
       world_.fibres.add(spec.fibres, world_.fabrics.back().ply_radius, spec.detail);
@@ -109,14 +138,15 @@ class Builder {
   // A segment takes 16 bytes of frame and about 25 in leaves and nodes on the device, and 12 of position and 32 of
   // anchor until its leaf is packed; the host holds it once more while it knits.
   static void refuse_if_too_large(const BaseMesh& mesh, const Pattern& pattern, const FabricSpec& spec) {
-    constexpr double kBytes = 16 + 25 + 12 + 32 + 160;
+    // A procedural one keeps a few bytes; its boxes and its tree take some forty while they are built.
+    const double bytes = spec.storage == Storage::procedural ? 48 : 16 + 25 + 12 + 32 + 160;
     const double segments = double(estimate_segments(mesh, pattern, spec));
     const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
-    if (segments * kBytes > 0.8 * memory)
+    if (segments * bytes > 0.8 * memory)
       user_error(
           "fabric \"{}\": about {:.3g} ply segments would need {:.3g} GB, this machine has {:.3g} GB; use fewer "
           "repeats, a coarser gauge or a larger tolerance",
-          spec.name, segments, segments * kBytes * 1e-9, memory * 1e-9);
+          spec.name, segments, segments * bytes * 1e-9, memory * 1e-9);
   }
 
   int add_material(const SurfaceAppearance& look) {

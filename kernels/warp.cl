@@ -1,7 +1,7 @@
 /* The warp of the flat knit on to the base mesh (KNIT21 Algorithm 1): W(x, y, z) = P(b) + z N(b), with P and N the
    barycentric point and the unit interpolated normal of the anchor's triangle. geom/warp.h is its reference in double.
    A work-item warps W_LANES consecutive vertices. */
-#include "geometry/real.clh"
+#include "geometry/vertex_frame.clh"
 #include "shared/wale_types.h"
 
 /* Anchors of W_LANES vertices with the corners of their triangles, one lane a vertex. */
@@ -54,23 +54,8 @@ W_INLINE w_v3 corner(const Lanes* lanes, uint i) {
   return v;
 }
 
-W_INLINE w_v3 scaled(w_vf s, w_v3 a) {
-  w_v3 b;
-  b.x = s * a.x;
-  b.y = s * a.y;
-  b.z = s * a.z;
-  return b;
-}
 /* s a + t b. */
-W_INLINE w_v3 weighted(w_vf s, w_v3 a, w_vf t, w_v3 b) { return w_v3_fma(s, a, scaled(t, b)); }
-W_INLINE w_v3 sum(w_v3 a, w_v3 b) { return w_v3_fma(w_all(1), a, b); }
-
-W_INLINE w_vf norm(w_v3 a) { return sqrt(w_v3_dot(a, a)); }
-W_INLINE w_v3 unit_or_zero(w_v3 a) {
-  const w_vf l = norm(a);
-  const w_vi is_long = w_lt(w_all(R(1e-18)), l);
-  return scaled(w_select(w_all(0), w_all(1) / w_select(w_all(1), l, is_long), is_long), a);
-}
+W_INLINE w_v3 weighted(w_vf s, w_v3 a, w_vf t, w_v3 b) { return w_v3_fma(s, a, w_v3_scaled(t, b)); }
 
 /* Writes where every vertex lies: x, y, z. */
 __kernel void warp_points(__global const WAnchor* anchors, __global const float* positions,
@@ -83,9 +68,9 @@ __kernel void warp_points(__global const WAnchor* anchors, __global const float*
   const w_vf b1 = w_load(lanes.b1), b2 = w_load(lanes.b2), height = w_load(lanes.height);
   const w_v3 p0 = corner(&lanes, 0), n0 = corner(&lanes, 3);
   const w_v3 point =
-      sum(p0, weighted(b1, w_v3_sub(corner(&lanes, 1), p0), b2, w_v3_sub(corner(&lanes, 2), p0)));
-  const w_v3 n = sum(n0, weighted(b1, w_v3_sub(corner(&lanes, 4), n0), b2, w_v3_sub(corner(&lanes, 5), n0)));
-  const w_vf l = norm(n);
+      w_v3_add(p0, weighted(b1, w_v3_sub(corner(&lanes, 1), p0), b2, w_v3_sub(corner(&lanes, 2), p0)));
+  const w_v3 n = w_v3_add(n0, weighted(b1, w_v3_sub(corner(&lanes, 4), n0), b2, w_v3_sub(corner(&lanes, 5), n0)));
+  const w_vf l = w_v3_norm(n);
   const w_vi is_long = w_lt(w_all(R(1e-12)), l);
   const w_v3 w = w_v3_fma(w_select(w_all(0), height / w_select(w_all(1), l, is_long), is_long), n, point);
   w_store(w.x, lanes.x[0]);
@@ -132,13 +117,13 @@ __kernel void warp_normals(__global const WAnchor* anchors, __global const float
   const w_vf b1 = w_load(lanes.b1), b2 = w_load(lanes.b2), s = w_load(d1), t = w_load(d2);
   const w_v3 p0 = corner(&lanes, 0), n0 = corner(&lanes, 3);
   const w_v3 n1 = w_v3_sub(corner(&lanes, 4), n0), n2 = w_v3_sub(corner(&lanes, 5), n0);
-  const w_v3 m = sum(n0, weighted(b1, n1, b2, n2));
-  const w_vf inv = w_all(1) / w_max(norm(m), w_all(R(1e-12)));
-  const w_v3 n = scaled(inv, m);
+  const w_v3 m = w_v3_add(n0, weighted(b1, n1, b2, n2));
+  const w_vf inv = w_all(1) / w_max(w_v3_norm(m), w_all(R(1e-12)));
+  const w_v3 n = w_v3_scaled(inv, m);
   const w_v3 along = weighted(s, w_v3_sub(corner(&lanes, 1), p0), t, w_v3_sub(corner(&lanes, 2), p0));
-  const w_v3 turn = scaled(inv, weighted(s, n1, t, n2));
+  const w_v3 turn = w_v3_scaled(inv, weighted(s, n1, t, n2));
   const w_v3 square = w_v3_fma(-w_v3_dot(n, turn), n, turn);
-  const w_v3 carried = sum(w_v3_fma(w_load(lanes.height), square, along), scaled(w_load(fz), n));
+  const w_v3 carried = w_v3_add(w_v3_fma(w_load(lanes.height), square, along), w_v3_scaled(w_load(fz), n));
 
   w_v3 before, here, after;
   before.x = w_load(x);
@@ -150,26 +135,9 @@ __kernel void warp_normals(__global const WAnchor* anchors, __global const float
   after.x = w_load(x + 2);
   after.y = w_load(y + 2);
   after.z = w_load(z + 2);
-  const w_v3 none = w_v3_all((w_real3)(0));
-  const w_v3 in = w_v3_select(unit_or_zero(w_v3_sub(here, before)), none, w_bits_mask(starts));
-  const w_v3 out = w_v3_select(unit_or_zero(w_v3_sub(after, here)), none, w_bits_mask(ends));
-  const w_v3 tangent = unit_or_zero(sum(in, out));
-  w_v3 frame = w_v3_fma(-w_v3_dot(carried, tangent), tangent, carried);
-  /* Where no direction is left: any one square to the ply. */
-  const w_vf ff = w_v3_dot(frame, frame);
-  const w_vi good = w_lt(w_all(R(1e-10)) * w_v3_dot(carried, carried), ff) & w_le(ff, w_all(FLT_MAX));
-  w_v3 any = w_v3_all((w_real3)(R(1.0), R(0.0), R(0.0)));
-  any = w_v3_select(any, tangent, w_lt(w_all(0), w_v3_dot(tangent, tangent)));
-  const w_vi steep = w_lt(fabs(any.x), w_all(R(0.6)));
-  w_v3 square_x, square_y;
-  square_x.x = w_all(0);
-  square_x.y = any.z;
-  square_x.z = -any.y;
-  square_y.x = -any.z;
-  square_y.y = w_all(0);
-  square_y.z = any.x;
-  frame = w_v3_select(w_v3_select(square_y, square_x, steep), frame, good);
-  frame = scaled(w_all(1) / norm(frame), frame);
+  before = w_v3_select(before, here, w_bits_mask(starts));
+  after = w_v3_select(after, here, w_bits_mask(ends));
+  const w_v3 frame = w_vertex_frame(carried, before, here, after);
   w_store(frame.x, x);
   w_store(frame.y, y);
   w_store(frame.z, z);

@@ -45,4 +45,7 @@ constexpr double kFamilyP = 0.01;
 // Seconds of processor time that a reader may take for any file of up to 64 KiB: what a user does not notice.
 constexpr double kReaderSeconds = 1;
 
+// Stored leaves against their estimate (host/memory_needs.h): some hold fewer intervals than others of their yarn.
+constexpr double kLeafBytes = 0.1;
+
 }  // namespace wale::tolerance

@@ -52,6 +52,50 @@ typedef int32_t w_int;
 #define W_LEAF_PLY 11  /* number of the run's first ply, over all fabrics */
 /* Hit code of a ply segment: leaf offset (16-byte units) << 4 | lane. */
 
+/* --- procedural leaf: no points are kept -----------------------------------------------------------------------------
+   Leaf number W_LEAF_PROCEDURAL | v << patch bits | patch: v is the lattice vertex at the corner of a tile, `patch` an
+   entry of the tile tables. A lattice vertex is P x,y,z, N x,y,z. An entry is W_PATCH_WORDS words: first a leaf's header,
+   of which SEGMENT and PLY hold for tile (0,0), then what follows. The leaf's points are
+     x_i = sum over controls c of rows[c][0][i] P_c + rows[c][1][i] N_c,
+   control c being lattice vertex v + controls[c], rows of W_PATCH_POINTS floats at multiples of 64 bytes. */
+#define W_LEAF_PROCEDURAL 0x08000000u
+#define W_LATTICE_WORDS 6
+#define W_PATCH_WORDS 32
+#define W_PATCH_POINTS 32
+#define W_PATCH_CONTROLS 12 /* word of the first of its control offsets (int, lattice words) */
+#define W_PATCH_CONTROL_COUNT 13
+#define W_PATCH_ROWS 14          /* word of its weights */
+#define W_PATCH_VERTEX 15        /* word of the WTileVertex at the start of lane 0 */
+#define W_PATCH_VERTEX_STRIDE 16 /* vertices per ply in that table */
+#define W_PATCH_CORNER 17        /* lattice vertex at the corner of tile (0,0) */
+#define W_PATCH_PITCH 18         /* lattice vertices per row of the lattice */
+#define W_PATCH_CELLS 19         /* lattice cells along a tile's side */
+#define W_PATCH_SEGMENT_COLUMN 20
+#define W_PATCH_SEGMENT_ROW 21 /* segment ids to add per column and row of tiles */
+#define W_PATCH_PLY_COLUMN 22
+#define W_PATCH_PLY_ROW 23 /* and plies */
+#define W_PATCH_AXIS 24    /* 0: its yarn goes on in the next column, 1: in the next row */
+
+/* Vertex of a tile as a combination of the corners (0,0), (1,0), (0,1), (1,1) of one lattice cell (geom/tile_knit.h).
+   Lengths count in 2^-32 of W_LENGTH_PERIOD radii, where they wrap. */
+typedef struct WTileVertex {
+  w_int cell;   /* first corner, in lattice words from the tile's corner */
+  w_uint length, lap; /* of ply from the start of the tile's piece; of the whole piece */
+  w_int up;     /* lattice words from corner (0,0) to (0,1) */
+  float w[4], h[4], a[4], b[4];
+} WTileVertex;
+
+/* One yarn of a tile all over a cloth that is stored: a run of `plies` polylines of `count` vertices for every row
+   (axis 0) or column of its tiles, one after the other from first_vertex on. */
+typedef struct WLatticeRun {
+  w_uint first_vertex, count, plies, ghosts; /* ghosts: 1 where it is closed, with a ghost end at either side */
+  w_uint samples, tiles, axis, first_ply;    /* segments per tile; tiles along it */
+  w_uint table, stride;                      /* word of its WTileVertex of ply 0, sample 0; those per ply */
+  w_uint corner, pitch, cells;               /* as W_PATCH_* */
+  float radius;
+  w_uint pad0, pad1;
+} WLatticeRun;
+
 /* --- what a ply vertex keeps for shading: frame normal (unit) and rest length along the full ply, 4 floats, 16 bytes;
    where it lies is in the leaves. ------------------------------------------------------------------------------------
    The length starts anywhere (a hash of the ply, so that neighbours do not look alike) and wraps at W_LENGTH_PERIOD ply
@@ -214,6 +258,8 @@ typedef struct WFrame {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(w_float4) == 16);
 static_assert(sizeof(WAnchor) == 32);
+static_assert(sizeof(WTileVertex) == 80);
+static_assert(sizeof(WLatticeRun) == 64);
 static_assert(sizeof(WGrid) == 48);
 static_assert(sizeof(WPlyMaterial) == 128);
 static_assert(sizeof(WFibreDetail) == 48);

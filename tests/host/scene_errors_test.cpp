@@ -79,6 +79,20 @@ TEST(SceneErrors, WrongUnits) {
   EXPECT_EQ(refused_keys("\"units\": \"inch\""), "s.json:2:10: units: \"inch\" is not known; valid: \"m\", \"mm\"");
 }
 
+TEST(SceneErrors, StorageThatIsNone) {
+  EXPECT_EQ(refused_fabric("\"storage\": \"procedual\""),
+            "s.json:4:12: fabrics.0.storage: \"procedual\" is not known; did you mean \"procedural\"?");
+}
+
+TEST(SceneErrors, LatticeOfTooManyCells) {
+  EXPECT_EQ(refused_fabric("\"lattice\": 65"), "s.json:4:12: fabrics.0.lattice: 65 is out of range; valid: 0 to 64");
+}
+
+TEST(SceneErrors, LatticeOfHalfACell) {
+  EXPECT_EQ(refused_fabric("\"lattice\": 1.5"),
+            "s.json:4:12: fabrics.0.lattice: a whole number is needed here, not the number 1.5");
+}
+
 TEST(SceneErrors, LanesThatNoKernelHas) {
   EXPECT_EQ(refused_keys("\"integrator\": {\"lanes\": 4}"),
             "s.json:2:25: integrator.lanes: the number 4 is not valid; valid: 0, 1, 8, 16");

@@ -1,6 +1,7 @@
 // A render on several devices is the render on one: bit for bit where the devices are alike.
 #include <gtest/gtest.h>
 
+#include "host/stages.h"
 #include "tests/image/picture.h"
 #include "tests/image/program.h"
 #include "tests/run_program.h"
@@ -67,12 +68,16 @@ TEST(Devices, WhatIsForeseenIsWhatIsFound) {
                          R"(, "materials": {"y": {"type": "ply", "preset": "wool", "heather": {"yarn": 0.1}}},
                             "lights": [{"type": "environment", "radiance": 1}, {"type": "sphere", "position": [0, 0, 9],
                             "radius": 1, "radiance": 0}], "objects": [{"type": "sphere", "center": [0,0,-5], "radius": 1}])"},
+                        {R"(, "storage": "procedural"})", ""},
+                        {R"(, "storage": "stored", "lattice": 2})", ""},
                         {"}", R"(, "objects": [{"type": "ground", "height": -9}])"}}) {
     const Scene scene = read_scene(folder.write(
         "scene.json", R"({"wale": 1, "units": "mm", "fabrics": [)" + fabric + c.fabric + "]" + c.more + "}"));
     const World world = build_world(scene, {});
-    EXPECT_EQ(foresee(scene, true, 16).options(), analyse(world, scene.integrator, true, 16).options())
-        << c.fabric << c.more;
+    const Features foreseen = foresee(scene, true, 16), found = analyse(world, scene.integrator, true, 16);
+    EXPECT_EQ(foreseen.options(), found.options()) << c.fabric << c.more;
+    const std::vector<Stage> a = geometry_stages(foreseen), b = geometry_stages(found);
+    for (size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].used, b[i].used) << a[i].file << c.fabric;
   }
 }
 

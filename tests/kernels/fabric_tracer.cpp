@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <ctime>
 #include <type_traits>
 
 #include "host/program.h"
@@ -16,7 +17,8 @@ constexpr const char* kKernels = R"(
     __global uint* counters, __global const float* base_positions, __global const uint* base_indices, \
     __global const float* base_uv, __global const uint* cell_triangle_offsets, __global const uint* cell_triangles, \
     __global const uint* cell_segment_offsets, __global const uint* cell_segments, __global const WGrid* grids, \
-    __global const uint* grid_of_cell, __global const TestRay* rays, uint count
+    __global const uint* grid_of_cell, __global const float* lattice, __global const uint* tiles, uint patch_bits, \
+    __global const TestRay* rays, uint count
 #if W_LOCAL_STAGE
 #define CELLS s.base_positions = base_positions; s.base_indices = base_indices; s.base_uv = base_uv; \
     s.cell_triangle_offsets = cell_triangle_offsets; s.cell_triangles = cell_triangles; \
@@ -25,8 +27,13 @@ constexpr const char* kKernels = R"(
 #else
 #define CELLS
 #endif
+#ifdef W_HAS_PROCEDURAL
+#define LATTICE s.lattice = lattice; s.tiles = tiles; s.patch_bits = patch_bits;
+#else
+#define LATTICE
+#endif
 #define SCENE WScene s; s.nodes = nodes; s.node_cell = node_cell; s.leaves = leaves; s.ply_root = 0; \
-    s.tri_root = W_NONE; s.spheres_count = 0; s.counters = counters; CELLS
+    s.tri_root = W_NONE; s.spheres_count = 0; s.counters = counters; CELLS LATTICE
 __kernel void trace(PARAMS, __global TestHit* hits) {
   const uint i = get_global_id(0);
   if (i >= count) return;
@@ -42,6 +49,13 @@ __kernel void nearest(PARAMS, __global float* out) {
   const WHit hit = w_closest(&s, &r);
   out[i] = (float)hit.t + (float)(hit.code & 1u);
 }
+__kernel void any_hit(PARAMS, __global float* out) {
+  const uint i = get_global_id(0);
+  if (i >= count) return;
+  SCENE
+  const WRay r = ray_of(rays + i);
+  out[i] = (float)w_occluded(&s, &r);
+}
 __kernel void surfaces(PARAMS, __global const TestHit* hits, __global const float* frames,
                        __global TestSurface* out) {
   const uint i = get_global_id(0);
@@ -52,7 +66,7 @@ __kernel void surfaces(PARAMS, __global const TestHit* hits, __global const floa
 }
 )";
 
-constexpr cl_uint kFirstOwn = 15;  // first argument behind PARAMS
+constexpr cl_uint kFirstOwn = 18;  // first argument behind PARAMS
 
 FabricDevice upload(const Device& device, const Fabric& fabric, float tau, LocalStage stage, bool updatable) {
   const FabricInput input{&fabric, 0, tau};
@@ -77,6 +91,7 @@ FabricTracer::FabricTracer(const Device& device, const Fabric& fabric, float tau
       knit_(fabric),
       stage_(stage),
       fibres_(fabric.report.fibres > 0),
+      procedural_(fabric.procedural),
       fabric_(upload(device, fabric, tau, stage, updatable)),
       leaves_(fabric_.tree.leaves.read(device)),
       counters_(device, W_EVENT_COUNT) {
@@ -86,7 +101,8 @@ FabricTracer::FabricTracer(const Device& device, const Fabric& fabric, float tau
 cl::Kernel FabricTracer::bound(const char* name, const Buffer<Ray>& rays, size_t count, bool twice) const {
   const std::string lanes = twice ? "-DW_DOUBLE -DW_LANES=1" : fmt::format("-DW_LANES={}", device_.traits().lanes);
   const std::string options =
-      fmt::format("-DW_HAS_PLIES {} -DW_LOCAL_STAGE={}{}", lanes, int(stage_), fibres_ ? " -DW_HAS_FIBRES" : "");
+      fmt::format("-DW_HAS_PLIES {} -DW_LOCAL_STAGE={}{}", lanes, int(stage_), fibres_ ? " -DW_HAS_FIBRES" : "") +
+      (procedural_ ? " -DW_HAS_PROCEDURAL" : "");
   auto& program = programs_[twice];
   if (!program()) program = build_program_text(device_, std::string(kTraceTypes) + kKernels, options);
   cl::Kernel kernel(program, name);
@@ -95,8 +111,11 @@ cl::Kernel FabricTracer::bound(const char* name, const Buffer<Ray>& rays, size_t
   for (const cl::Buffer& buffer :
        {f.tree.nodes.cl(), f.tree.node_cell.cl(), f.tree.leaves.cl(), counters_.cl(), f.base_positions.cl(),
         f.base_indices.cl(), f.base_uv.cl(), f.cell_triangle_offsets.cl(), f.cell_triangles.cl(),
-        f.cell_segment_offsets.cl(), f.cell_segments.cl(), f.grids.cl(), f.grid_of_cell.cl(), rays.cl()})
+        f.cell_segment_offsets.cl(), f.cell_segments.cl(), f.grids.cl(), f.grid_of_cell.cl(), f.lattice.lattice.cl(),
+        f.lattice.tiles.cl()})
     kernel.setArg(arg++, buffer);
+  kernel.setArg(arg++, f.lattice.patch_bits);
+  kernel.setArg(arg++, rays.cl());
   kernel.setArg(arg++, uint32_t(count));
   return kernel;
 }
@@ -148,6 +167,17 @@ double FabricTracer::seconds(const std::vector<Ray>& rays) const {
   event.wait();
   return 1e-9 * double(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
                        event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+}
+
+double FabricTracer::cpu_seconds(const std::vector<Ray>& rays, const char* name) const {
+  const Buffer<Ray> in(device_, rays);
+  const Buffer<float> out(device_, rays.size());
+  cl::Kernel kernel = bound(name, in, rays.size(), false);
+  kernel.setArg(kFirstOwn, out.cl());
+  const std::clock_t start = std::clock();
+  device_.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device_.global(rays.size()), device_.local());
+  device_.queue().finish();
+  return double(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 uint32_t FabricTracer::segment(uint32_t code) const {

@@ -27,7 +27,9 @@ class FabricTracer {
                                                     const std::vector<HitOf<double>>& hits) const;
   /// Seconds that the device reports for one launch of the nearest-hit kernel, without copies.
   double seconds(const std::vector<Ray>& rays) const;
-  /// Id of the segment behind a hit code: the vertex id of its start.
+  /// CPU seconds, of all threads, of one launch of kernel `nearest` or `any_hit` over the rays, without copies.
+  double cpu_seconds(const std::vector<Ray>& rays, const char* kernel) const;
+  /// Id of the segment behind a hit code of a stored leaf: the vertex id of its start.
   uint32_t segment(uint32_t code) const;
   /// The device's counters of rare events (W_EVENT_*) since the tracer was made.
   std::vector<uint32_t> events() const;
@@ -47,7 +49,7 @@ class FabricTracer {
   const Device& device_;
   const Fabric& knit_;
   LocalStage stage_;
-  bool fibres_;
+  bool fibres_, procedural_;
   FabricDevice fabric_;
   std::vector<uint32_t> leaves_;
   Buffer<uint32_t> counters_;
