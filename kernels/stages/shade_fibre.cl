@@ -7,6 +7,7 @@
 #include "lights.clh"
 #include "sampling/dimensions.clh"
 #include "sampling/sobol.clh"
+#include "stages/ask_ahead.clh"
 #include "stages/continue_path.clh"
 #include "stages/light_args.clh"
 #include "stages/load_hit.clh"
@@ -81,13 +82,15 @@ __kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_P
                           __global const WFibreMaterial* materials, W_COLOR_PARAMS __global float4* aov,
                           __global const uint* list, __global const uint* counts, uint count_index, uint depth) {
   const uint i = get_global_id(0);
-  if (i >= counts[count_index]) return;
+  const uint count = counts[count_index];
+  if (i >= count) return;
   const uint slot = list[i];
   if (w_last_ray(&frame, depth)) {
     mask[slot] = 0u;
     return;
   }
   const WScene scene = W_SCENE;
+  w_ask_ahead(&scene, frames, list, hit, i, count);
   const WLights lights = W_LIGHTS;
   w_shade_fibre(&frame, W_PATH_ARGS, &scene, &lights, frames, materials, W_COLOR_ARGS aov, slot, depth);
 }
