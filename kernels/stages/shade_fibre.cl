@@ -90,7 +90,7 @@ __kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_P
     return;
   }
   const WScene scene = W_SCENE;
-  w_ask_ahead(&scene, frames, list, hit, i, count);
+  w_ask_for_hits(&scene, frames, list, hit, i, count);
   const WLights lights = W_LIGHTS;
   w_shade_fibre(&frame, W_PATH_ARGS, &scene, &lights, frames, materials, W_COLOR_ARGS aov, slot, depth);
 }

@@ -133,7 +133,7 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
     return;
   }
   const WScene scene = W_SCENE;
-  w_ask_ahead(&scene, frames, list, hit, i, count);
+  w_ask_for_hits(&scene, frames, list, hit, i, count);
   const WLights lights = W_LIGHTS;
   w_shade_ply(&frame, W_PATH_ARGS, &scene, &lights, frames, materials, W_DETAIL_ARGS W_COLOR_ARGS aov, slot, depth);
 }

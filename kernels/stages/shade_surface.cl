@@ -35,7 +35,7 @@ W_CALL void w_shade_surface(const WFrame* frame, W_PATH_PARAMS, const WLights* l
     skip = raw.z;
   } else {
     const WSphere sphere = spheres[raw.z];
-    ng = normalize(from + t * d - sphere.center.xyz);
+    ng = w_unit(from + t * d - sphere.center.xyz);
     ns = ng;
     p = sphere.center.xyz + sphere.center.w * ng;
     material = (uint)sphere.material;
@@ -61,7 +61,7 @@ W_CALL void w_shade_surface(const WFrame* frame, W_PATH_PARAMS, const WLights* l
   float3 n = dot(ns, n_geo) < 0.0f ? -ns : ns;
   // A shading normal that faces away from the viewer would lose energy: lean it back to grazing.
   const float facing = dot(n, d);
-  if (facing > -1e-3f) n = normalize(n - d * (facing + 1e-3f));
+  if (facing > -1e-3f) n = w_unit(n - d * (facing + 1e-3f));
 
 #ifdef W_AOVS
   const float3 none = (float3)(0.0f);
