@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geom/error.h"
+#include "host/large_pages.h"
 #include "host/program.h"
 #include "shared/wale_types.h"
 
@@ -83,6 +84,7 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
                  device.traits().name);
   words += kTail;
   tree.leaves = Buffer<uint32_t>(device, words);
+  ask_for_large_pages(device, tree.leaves.cl());
   tree.leaves.fill(device, 0);
   std::vector<uint32_t> run_of;
   run_of.reserve(4 * patches.size());
@@ -119,7 +121,7 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
   if (!group_box.empty())
     for (const PlyPatch& patch : patches) cells.push_back(patch.cell);
   const WideTree wide = build_wide_tree(boxes, tree.leaf_offset, cells, group_box);
-  tree.nodes = Buffer<uint32_t>(device, wide.words);
+  tree.nodes = in_large_pages(device, wide.words);
   tree.node_cell = Buffer<uint32_t>(device, group_box.empty() ? std::vector<uint32_t>{} : wide.node_cell);
   if (updatable) tree.refit = std::make_unique<PlyRefit>(device, runs, positions, tree.leaf_offset, wide, tree);
   tree.build_seconds = now() - start - tree.pack_seconds;

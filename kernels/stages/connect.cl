@@ -1,11 +1,11 @@
 /* Shadow rays: what was sampled on a light arrives unless something is in the way. Plies in the way let the uncollided
    part of the light through by the same rule as on path rays. */
 #include "geometry/traverse.clh"
+#include "sampling/dimensions.clh"
 #include "stages/ask_ahead.clh"
 #include "stages/load_hit.clh"
 #include "stages/path_state.clh"
 #include "stages/scene_args.clh"
-#include "sampling/dimensions.clh"
 
 W_CALL int w_connects(const WScene* scene, const WRay* ray) { return !w_occluded(scene, ray); }
 

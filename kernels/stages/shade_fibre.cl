@@ -32,7 +32,8 @@ W_CALL void w_shade_fibre(const WFrame* frame, W_PATH_PARAMS, const WScene* scen
   WFibreMaterial material = materials[s.material & ~W_MATERIAL_FIBRE];
 #ifdef W_HAS_PLY_COLORS
   if (colors[s.segment] & W_COLOR_GIVEN)
-    material.transmit.xyz = w_ply_color(colors[s.segment]) * (material.transmit.w != 0.0f ? material.transmit.xyz : 1.0f);
+    material.transmit.xyz =
+        w_ply_color(colors[s.segment]) * (material.transmit.w != 0.0f ? material.transmit.xyz : 1.0f);
 #endif
   const WFibreShade shade = w_fibre_setup(material, s.smooth_t, s.smooth_n, -ray.d);
   const float3 axis = s.u * s.edge;
@@ -42,8 +43,7 @@ W_CALL void w_shade_fibre(const WFrame* frame, W_PATH_PARAMS, const WScene* scen
 
 #ifdef W_AOVS
   if (depth == 0)
-    W_STORE_FEATURES(slot, shade.a[0] + shade.a[1], h.t, s.smooth_n, s.phi, s.smooth_t, s.length,
-                     s.anchor + s.x, s.ply)
+    W_STORE_FEATURES(slot, shade.a[0] + shade.a[1], h.t, s.smooth_n, s.phi, s.smooth_t, s.length, s.anchor + s.x, s.ply)
 #endif
 
   const WSampler sampler = w_sampler(w_slot_pixel(frame, slot), w_slot_sample(frame, slot), frame->seed);

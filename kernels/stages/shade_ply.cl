@@ -1,5 +1,5 @@
-/* A path meets a ply (KNIT21 section 3.3): connect it to a light, go on along a lobe of the ply BSDF. A direction on the
-   outer side of the surface leaves at the hit; any other one leaves from the middle of the chord through the ply
+/* A path meets a ply (KNIT21 section 3.3): connect it to a light, go on along a lobe of the ply BSDF. A direction on
+   the outer side of the surface leaves at the hit; any other one leaves from the middle of the chord through the ply
    (docs/appearance.md), and meets whatever lies ahead, its own segment excepted. */
 #include "appearance/ply_bsdf.clh"
 #include "appearance/ply_color.clh"
@@ -31,7 +31,7 @@ static inline float3 w_leave(const WPlySurface* s, float3 out, float3 middle, fl
 #endif
 
 #ifdef W_HAS_DETAIL
-#define W_DETAIL_PARAMS                                                                                     \
+#define W_DETAIL_PARAMS                                                                                              \
   __global const WFibreDetail *details, __global const uint *fibre_offsets, __global const float4 *fibre_candidates, \
       float2 pixel_width,
 #define W_DETAIL_ARGS details, fibre_offsets, fibre_candidates, pixel_width,

@@ -12,9 +12,9 @@
 /* Per triangle: corners 9, corner normals 9, material 1, unused 1. */
 #define W_TRIANGLE_WORDS 20
 
-W_CALL void w_shade_surface(const WFrame* frame, W_PATH_PARAMS, const WLights* lights,
-                            __global const float* triangles, __global const WSphere* spheres,
-                            __global const WSurfaceMaterial* materials, __global float4* aov, uint slot, uint depth) {
+W_CALL void w_shade_surface(const WFrame* frame, W_PATH_PARAMS, const WLights* lights, __global const float* triangles,
+                            __global const WSphere* spheres, __global const WSurfaceMaterial* materials,
+                            __global float4* aov, uint slot, uint depth) {
   const uint4 raw = hit[slot];
   const float2 uv = hit_uv[slot];
   const float3 d = ray_d[slot].xyz;
