@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geom/error.h"
+#include "host/large_pages.h"
 #include "host/program.h"
 
 namespace wale {
@@ -79,6 +80,7 @@ FabricWarp::FabricWarp(const Device& device, std::span<const FabricInput> inputs
   count_ = uint32_t(in.vertices);
   points_ = Buffer<float>(device, (count_ + more) * 3);
   frames_ = Buffer<float>(device, (count_ + more) * W_FRAME_WORDS);
+  ask_for_large_pages(device, frames_.cl());
   positions_ = Buffer<float>(device, in.positions);
   triangles_ = Buffer<uint32_t>(device, in.triangles);
   if (count_ == 0) return;

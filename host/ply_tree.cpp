@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geom/error.h"
+#include "host/large_pages.h"
 #include "host/program.h"
 #include "shared/wale_types.h"
 
@@ -90,6 +91,7 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
     device_error("ply tree: leaves of {} MB do not fit one buffer of {}; use fewer repeats", words * 4 >> 20,
                  device.traits().name);
   tree.leaves = Buffer<uint32_t>(device, words + kTail);
+  ask_for_large_pages(device, tree.leaves.cl());
   constexpr uint32_t kZeros[kTail] = {};
   device.queue().enqueueWriteBuffer(tree.leaves.cl(), CL_TRUE, words * 4, sizeof(kZeros), kZeros);
   std::vector<uint32_t> run_of;
@@ -127,7 +129,7 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
   if (!group_box.empty())
     for (const PlyPatch& patch : patches) cells.push_back(patch.cell);
   const WideTree wide = build_wide_tree(boxes, tree.leaf_offset, cells, group_box);
-  tree.nodes = Buffer<uint32_t>(device, wide.words);
+  tree.nodes = in_large_pages(device, wide.words);
   place_leaves(device, uint32_t(wide.nodes()), tree);
   tree.node_cell = Buffer<uint32_t>(device, group_box.empty() ? std::vector<uint32_t>{} : wide.node_cell);
   if (updatable) tree.refit = std::make_unique<PlyRefit>(device, runs, positions, wide, tree);

@@ -30,8 +30,9 @@ constexpr double kLeafPart = W_LEAF_HEADER * kWord + 4 * 3 * kWord + 2 * W_FRAME
 constexpr double kTriangle = 20 * kWord;
 
 // Additions and multiplications of one hit with one light sample, as `oclgrind --inst-counts` counts them (a dot
-// product as five, a fused multiply-add as two), and 20 for each of its 39 exponentials, logarithms and angles.
-constexpr double kShadePlyOperations = 1000 + 39 * 20;
+// product as five, a fused multiply-add as two), and 20 for each of its 26 exponentials, logarithms and angles
+// (kernels/shared/elementary.clh).
+constexpr double kShadePlyOperations = 1000 + 26 * 20;
 
 }  // namespace
 
