@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
   Tracer tracer(device, cloth);
   fmt::print("{}: {} segments, {} patches, {} nodes, {:.1f} B a segment, pack {:.3f} s, tree {:.3f} s\n",
              device.traits().name, cloth.segments(), cloth.patches.size(), tracer.tree().node_cell.count(),
-             double(tracer.tree().leaves.bytes() + tracer.tree().nodes.bytes()) / double(cloth.segments()),
+             double(tracer.tree().leaves.bytes() + tracer.tree().tree_bytes()) / double(cloth.segments()),
              tracer.tree().pack_seconds, tracer.tree().build_seconds);
   const bench::ClothRays rays = bench::cloth_rays(tracer, side, options);
   fmt::print("hit {:.1f} %, primary {:.2f}, bounce {:.2f}, shadow {:.2f} Mrays per CPU-second\n",

@@ -71,7 +71,7 @@ void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
   for (const auto& stage : stages)
     builds.push_back(std::async(policy, [&, file = stage.file] {
       const auto start = Clock::now();
-      cl::Program program = build_program(device_, file, features_.options(), kernel_dir);
+      cl::Program program = build_program(device_, file, features_.options() + scene_.options(), kernel_dir);
       return std::pair(program, std::chrono::duration<double>(Clock::now() - start).count());
     }));
   for (size_t i = 0; i < stages.size(); ++i) {
