@@ -64,7 +64,8 @@ std::vector<MemoryNeed> memory_needs(const World& world, const Features& feature
       {"ply vertices", vertices * W_FRAME_WORDS * 4, vertices * W_FRAME_WORDS * 4, fewer},
       {"ply leaves", leaves, leaves <= LeafBuffers::most_bytes(traits.max_alloc_bytes) ? 0 : leaves, fewer},
       {"lattices", lattices, lattices, "fewer repeats, a coarser gauge or fewer lattice cells"},
-      {"ply tree", patches * kTreeBytes, patches * kTreeBytes, fewer},
+      // A quantised tree is made from the other one, which goes afterwards.
+      {"ply tree", patches * kTreeBytes * (features.simt ? 2 : 1), patches * kTreeBytes, fewer},
       {"warp and pack", anchors * kWarpBytes + vertices * 12 + patches * kPackBytes, anchors * sizeof(WAnchor), fewer},
       {"ply colours", world.ply_colors.size() * 4, world.ply_colors.size() * 4, "fewer colours"},
       {"triangles", world.triangles.size() * 4 * 2, world.triangles.size() * 4, "simpler props"},

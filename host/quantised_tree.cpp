@@ -28,6 +28,7 @@ QuantisedTree::QuantisedTree(const Device& device, const WideTree& wide, const B
   nodes_ = Buffer<uint32_t>(device, wide.nodes() * W_QUANTISED_WORDS);
   leaf_boxes_ = Buffer<uint32_t>(device, size_t(first.back()) * W_LEAF_BOX_WORDS);
   requantise(device, nodes);
+  device.queue().finish();  // `nodes` may go away now: not every driver keeps what a launch still reads
 }
 
 void QuantisedTree::requantise(const Device& device, const Buffer<uint32_t>& nodes) {

@@ -7,7 +7,8 @@
 namespace wale {
 
 /// A wide tree in the form that one ray per work-item goes down by (W_QUANTISED_* and W_LEAF_BOX_* in
-/// kernels/shared/wale_types.h; kernels/geometry/traverse_simt.clh): a third of the bytes. Nodes keep their numbers.
+/// kernels/shared/wale_types.h; kernels/geometry/traverse_simt.clh): nodes of 128 bytes that keep their numbers, and the
+/// exact boxes of leaves apart.
 class QuantisedTree {
  public:
   QuantisedTree() = default;
