@@ -38,7 +38,7 @@ class Devices {
   void upload(const World& world, const IntegratorScene& integrator, const RenderOptions& options) {
     for (const Device& device : open_) {
       const DeviceTraits& traits = device.traits();
-      const Features features = analyse(world, integrator, options.aovs, int(traits.lanes));
+      const Features features = analyse(world, integrator, options.aovs, traits);
       require_memory(device, memory_needs(world, features, pool_of(traits, integrator, options), traits));
     }
     const LocalStage stage = local_stage(integrator);
@@ -148,7 +148,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   start.step("read the scene");
   // Programs are compiled while the scene is knitted.
   Rehearsal rehearsal(args.device, [&](const DeviceTraits& traits) {
-    const Features features = foresee(scene, aovs, int(traits.lanes));
+    const Features features = foresee(scene, aovs, traits);
     auto stages = geometry_stages(features);
     for (auto& stage : wavefront_stages(features)) stages.push_back(std::move(stage));
     return Rehearsal::Plan{stages, features.options(), args.kernel_dir};
@@ -183,7 +183,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   start.step("first wave", r.first_sample_seconds);
 
   for (const auto& output : args.outputs) write_image(r.image, output, scene.film.exposure, scene.film.view);
-  const Features features = analyse(world, scene.integrator, aovs, int(devices.list().front().device->traits().lanes));
+  const Features features = analyse(world, scene.integrator, aovs, devices.list().front().device->traits());
   if (!args.stats.empty()) {
     Stats stats = stats_of(scene, world, devices.list(), features, r, rehearsal.cached());
     stats.first_sample_seconds = start.seconds();

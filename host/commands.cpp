@@ -73,7 +73,7 @@ int run_plan(const SceneArgs& args, const std::filesystem::path& json, const Loa
   const Device device = one_device(args);
   const World world = world_of(scene, loaders, args.quiet);
   const SceneDevice on_device(device, world, local_stage(scene.integrator));
-  const Features features = analyse(world, scene.integrator, true, int(device.traits().lanes));
+  const Features features = analyse(world, scene.integrator, true, device.traits());
   deliver(json, plan_json(world, on_device, scene.integrator, features),
           plan_text(world, on_device, scene.integrator, features));
   return 0;
@@ -129,9 +129,11 @@ int run_devices() {
     const auto& d = devices[i];
     fmt::print(
         "{}: {}\n   {} {}, {}\n   {} compute units, {:.1f} GiB, at most {:.1f} GiB in one buffer, fp64 {}\n"
-        "   vectors of {} lanes, {} paths in flight, work-groups of {}\n",
+        "   {}, {} paths in flight, work-groups of {}\n",
         i, d.name, d.platform, d.driver, d.version, d.compute_units, double(d.global_bytes) / (1u << 30),
-        double(d.max_alloc_bytes) / (1u << 30), d.fp64 ? "yes" : "no", d.lanes, d.pool, d.local_size);
+        double(d.max_alloc_bytes) / (1u << 30), d.fp64 ? "yes" : "no",
+        d.traversal == Traversal::simt ? "one ray per work-item" : fmt::format("vectors of {} lanes", d.lanes), d.pool,
+        d.local_size);
   }
   return 0;
 }

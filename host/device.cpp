@@ -30,6 +30,23 @@ std::vector<cl::Device> all_devices() {
   return devices;
 }
 
+// A GPU hides the latency of memory by rays that wait: more paths than its lanes can hold at once, many times over, so
+// that a bounce of few paths still fills it. 2^21 paths are some ten times the lanes that the largest GPUs keep
+// resident; smaller devices spend at most an eighth of their memory, and no buffer of 64 bytes a path (the feature
+// images') may be larger than the device allows.
+uint32_t gpu_pool(uint64_t global_bytes, uint64_t max_alloc_bytes) {
+  constexpr uint64_t kPathBytes = 256, kWidestBytes = 64, kMost = 1u << 21, kLeast = 1u << 16;
+  return uint32_t(std::clamp(std::min(global_bytes / 8 / kPathBytes, max_alloc_bytes / kWidestBytes), kLeast, kMost));
+}
+
+Traversal traversal_of(bool cpu) {
+  const char* wanted = std::getenv("WALE_TRAVERSAL");
+  if (!wanted || !*wanted) return cpu ? Traversal::lanes : Traversal::simt;
+  if (wanted == std::string("lanes")) return Traversal::lanes;
+  if (wanted == std::string("simt")) return Traversal::simt;
+  user_error("WALE_TRAVERSAL: {}: expected lanes or simt, or nothing for the device's own", wanted);
+}
+
 DeviceTraits traits_of(const cl::Device& device) {
   DeviceTraits t;
   t.name = device.getInfo<CL_DEVICE_NAME>();
@@ -44,9 +61,11 @@ DeviceTraits traits_of(const cl::Device& device) {
   t.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
   // Explicit vectors pay on CPUs; GPUs run one ray per work-item in scalar code.
   const unsigned native = device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
-  t.lanes = !t.cpu ? 1 : native >= 16 ? 16 : native >= 8 ? 8 : 1;
+  t.traversal = traversal_of(t.cpu);
+  t.lanes = !t.cpu || t.traversal == Traversal::simt ? 1 : native >= 16 ? 16 : native >= 8 ? 8 : 1;
   // One kernel variant of PoCL's for launches of a whole pool and for the shorter ones that follow.
-  t.pool = t.cpu ? Device::kLargeGrid - 512 : 1u << 21;
+  t.pool = t.cpu ? Device::kLargeGrid - 512 : gpu_pool(t.global_bytes, t.max_alloc_bytes);
+  // Whole warps of 32 and wavefronts of 64; no more, since a group holds its place until its longest ray is done.
   t.local_size = std::min<size_t>(64, device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>());
   // Oclgrind's compiler shares one LLVM context between threads and crashes when two of them build; its interpreter
   // knows no intrinsic that inlining and optimising make (llvm.experimental.noalias.scope.decl, llvm.bitreverse).
@@ -87,7 +106,7 @@ std::vector<unsigned> device_numbers(const std::string& text) {
     std::iota(numbers.begin(), numbers.end(), 0u);
     return numbers;
   }
-  for (const char* at = text.data(), *end = at + text.size();; ++at) {
+  for (const char *at = text.data(), *end = at + text.size();; ++at) {
     unsigned number = 0;
     const auto [next, error] = std::from_chars(at, end, number);
     if (error != std::errc() || (next != end && *next != ','))

@@ -10,6 +10,10 @@
 
 namespace wale {
 
+/// How rays go down the tree: `lanes` along vectors of the device's width, `simt` one ray per work-item of a GPU
+/// (kernels/geometry/traverse_simt.clh). Both find the same hits.
+enum class Traversal { lanes, simt };
+
 /// What a device is and what Wale chooses for it; the one table of device traits.
 struct DeviceTraits {
   std::string name, vendor, driver, platform, version;
@@ -17,12 +21,13 @@ struct DeviceTraits {
   bool fp64 = false;
   uint64_t global_bytes = 0, max_alloc_bytes = 0;
   unsigned compute_units = 1;
-  unsigned lanes = 1;           ///< width of explicit vectors: 1, 8 or 16 (W_LANES)
-  uint32_t pool = 1u << 16;     ///< paths in flight
-  unsigned local_size = 64;     ///< work-group size of every kernel
+  unsigned lanes = 1;  ///< width of explicit vectors: 1, 8 or 16 (W_LANES)
+  Traversal traversal = Traversal::lanes;
+  uint32_t pool = 1u << 16;         ///< paths in flight
+  unsigned local_size = 64;         ///< work-group size of every kernel
   bool compiles_at_launch = false;  ///< machine code is made at a kernel's first launch, not by clBuildProgram
   bool parallel_builds = true;      ///< programs may be compiled on several threads at once
-  std::string build_options;    ///< what this driver's compiler needs, then WALE_KERNEL_OPTIONS of the environment
+  std::string build_options;        ///< what this driver's compiler needs, then WALE_KERNEL_OPTIONS of the environment
 };
 
 /// Programs already built for a device, by source and options: an edit that changes neither compiles nothing.

@@ -208,9 +208,8 @@ FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> i
   out.lattice = std::move(placed.device);
   out.pack_seconds = out.tree.pack_seconds;
   out.build_seconds = out.tree.build_seconds;
-  out.node_count = out.tree.nodes.count() / W_NODE_WORDS;
-  out.bytes = out.frames.bytes() + out.tree.leaves.bytes() + out.tree.nodes.bytes() + out.tree.node_cell.bytes() +
-              out.lattice.bytes();
+  out.node_count = out.tree.node_count;
+  out.bytes = out.frames.bytes() + out.tree.leaves.bytes() + out.tree.tree_bytes() + out.lattice.bytes();
   if (updatable) out.bytes += points.bytes() + out.warp->bytes() + out.tree.refit->bytes();
   if (stage == LocalStage::exact) return out;
 

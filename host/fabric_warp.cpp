@@ -19,7 +19,7 @@ struct WarpInput {
 };
 
 void append(WarpInput& out, const Fabric& fabric, dvec3 origin) {
-  const uint32_t first_triangle = uint32_t(out.triangles.size() / 3), first_point = uint32_t(out.positions.size() / 3);
+  const uint32_t first_point = uint32_t(out.positions.size() / 3);
   const size_t first_vertex = out.vertices;
   out.vertices += fabric.anchors.size();
   for (size_t i = 0; i < fabric.mesh.position.size(); ++i)

@@ -8,6 +8,16 @@
 
 namespace wale {
 
+namespace {
+
+// Quantised nodes are gone down in scalar code only, whatever vectors the scene asks for.
+void choose_traversal(Features& f, const IntegratorScene& integrator, const DeviceTraits& traits) {
+  f.simt = quantised_tree(traits, f.local_stage);
+  f.lanes = f.simt ? 1 : integrator.lanes ? integrator.lanes : int(traits.lanes);
+}
+
+}  // namespace
+
 std::string Features::options() const {
   std::string out = fmt::format("-DW_LANES={} -DW_LOCAL_STAGE={}", lanes, int(local_stage));
   const auto define = [&](bool used, const char* name) {
@@ -16,6 +26,7 @@ std::string Features::options() const {
   define(plies || fibres, "W_HAS_PLIES");
   define(fibres, "W_HAS_FIBRES");
   define(procedural, "W_HAS_PROCEDURAL");
+  define(simt, "W_SIMT");
   define(triangles, "W_HAS_TRIANGLES");
   define(spheres, "W_HAS_SPHERES");
   define(environment, "W_HAS_ENVIRONMENT");
@@ -27,13 +38,17 @@ std::string Features::options() const {
   return out;
 }
 
+bool quantised_tree(const DeviceTraits& traits, LocalStage stage) {
+  return traits.traversal == Traversal::simt && stage == LocalStage::exact;
+}
+
 LocalStage local_stage(const IntegratorScene& integrator) {
   return integrator.local_stage == "exact"  ? LocalStage::exact
          : integrator.local_stage == "cell" ? LocalStage::cell
                                             : LocalStage::ring;
 }
 
-Features analyse(const World& world, const IntegratorScene& integrator, bool aovs, int device_lanes) {
+Features analyse(const World& world, const IntegratorScene& integrator, bool aovs, const DeviceTraits& traits) {
   Features f;
   for (const auto& fabric : world.fabrics) {
     f.plies |= fabric.report.plies > 0;
@@ -52,11 +67,11 @@ Features analyse(const World& world, const IntegratorScene& integrator, bool aov
   f.aovs = aovs;
   f.ply_colors = !world.ply_colors.empty();
   f.local_stage = local_stage(integrator);
-  f.lanes = integrator.lanes ? integrator.lanes : device_lanes;
+  choose_traversal(f, integrator, traits);
   return f;
 }
 
-Features foresee(const Scene& scene, bool aovs, int device_lanes) {
+Features foresee(const Scene& scene, bool aovs, const DeviceTraits& traits) {
   Features f;
   for (const auto& fabric : scene.fabrics) {
     const bool fibres = fabric.spec.detail == Detail::fibres;
@@ -86,7 +101,7 @@ Features foresee(const Scene& scene, bool aovs, int device_lanes) {
   f.paper_lobes = f.plies && integrator.ply_lobes == "paper";
   f.aovs = aovs;
   f.local_stage = local_stage(integrator);
-  f.lanes = integrator.lanes ? integrator.lanes : device_lanes;
+  choose_traversal(f, integrator, traits);
   return f;
 }
 
@@ -135,7 +150,10 @@ std::vector<Reason> explain(const World& world, const IntegratorScene& integrato
        f.ply_colors ? "fabrics: " + names(world.colored_fabrics, [](const auto& n) { return n; })
                     : "no plies, stripes, heather or color_image"},
       {"local stage " + integrator.local_stage, curves, curves ? "integrator.local_stage" : "no fabric in the scene"},
-      {fmt::format("{} lanes", f.lanes), true, integrator.lanes ? "integrator.lanes" : "width of the device's vectors"},
+      {fmt::format("{} lanes", f.lanes), true,
+       f.simt             ? "one ray per work-item, down quantised nodes"
+       : integrator.lanes ? "integrator.lanes"
+                          : "width of the device's vectors"},
   };
 }
 

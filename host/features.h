@@ -25,6 +25,7 @@ struct Features {
   bool ply_colors = false;      ///< colours that vary over the cloth
   LocalStage local_stage = LocalStage::exact;
   int lanes = 1;
+  bool simt = false;  ///< rays go down quantised nodes, one per work-item
 
   /// Camera rays go in packets of `lanes` (kernels/geometry/traverse_packet.clh).
   bool packets() const { return (plies || fibres) && local_stage == LocalStage::exact && lanes == W_NODE_WIDTH; }
@@ -40,13 +41,15 @@ struct Reason {
   std::string because;
 };
 
+/// The tree of such a device is quantised, for scenes of this local stage: the cheaper ones need cells in the tree.
+bool quantised_tree(const DeviceTraits& traits, LocalStage stage);
 /// Stage that a scene's integrator.local_stage names.
 LocalStage local_stage(const IntegratorScene& integrator);
-Features analyse(const World& world, const IntegratorScene& integrator, bool aovs, int device_lanes);
+Features analyse(const World& world, const IntegratorScene& integrator, bool aovs, const DeviceTraits& traits);
 /// The same from the scene alone, before anything is knitted: what analyse() will say, unless a fabric turns out empty
 /// or so large that it is held procedurally unasked, or a light's image black. For programs that are compiled ahead
 /// (host/rehearsal.h); nothing else may rest on it.
-Features foresee(const Scene& scene, bool aovs, int device_lanes);
+Features foresee(const Scene& scene, bool aovs, const DeviceTraits& traits);
 std::vector<Reason> explain(const World& world, const IntegratorScene& integrator, const Features& features);
 
 }  // namespace wale

@@ -6,6 +6,7 @@
 #include "geom/error.h"
 #include "host/film_device.h"
 #include "host/lattice_fabrics.h"
+#include "host/leaf_buffers.h"
 #include "host/world.h"
 
 namespace wale {
@@ -61,16 +62,16 @@ std::vector<MemoryNeed> memory_needs(const World& world, const Features& feature
        fmt::format("an integrator.pool of at most {}",
                    std::min(traits.global_bytes / 2 / path_bytes, traits.max_alloc_bytes / path_buffer))},
       {"ply vertices", vertices * W_FRAME_WORDS * 4, vertices * W_FRAME_WORDS * 4, fewer},
-      {"ply leaves", leaves, leaves, fewer},
+      {"ply leaves", leaves, leaves <= LeafBuffers::most_bytes(traits.max_alloc_bytes) ? 0 : leaves, fewer},
       {"lattices", lattices, lattices, "fewer repeats, a coarser gauge or fewer lattice cells"},
-      {"ply tree", patches * kTreeBytes, patches * kTreeBytes, fewer},
+      // A quantised tree is made from the other one, which goes afterwards.
+      {"ply tree", patches * kTreeBytes * (features.simt ? 2 : 1), patches * kTreeBytes, fewer},
       {"warp and pack", anchors * kWarpBytes + vertices * 12 + patches * kPackBytes, anchors * sizeof(WAnchor), fewer},
       {"ply colours", world.ply_colors.size() * 4, world.ply_colors.size() * 4, "fewer colours"},
       {"triangles", world.triangles.size() * 4 * 2, world.triangles.size() * 4, "simpler props"},
       {"environment",
        world.environment_tables.texels.size() * sizeof(w_float4) + world.environment_tables.cdf.size() * 4,
-       world.environment_tables.texels.size() * sizeof(w_float4),
-       "a smaller environment image"}};
+       world.environment_tables.texels.size() * sizeof(w_float4), "a smaller environment image"}};
   std::stable_sort(needs.begin(), needs.end(), [](const auto& a, const auto& b) { return a.bytes > b.bytes; });
   return needs;
 }

@@ -4,6 +4,7 @@
 
 #include "geom/wide_tree.h"
 #include "host/device.h"
+#include "host/leaf_buffers.h"
 
 namespace wale {
 
@@ -29,6 +30,7 @@ class PlyRefit {
 
   Buffer<uint32_t> runs_;
   std::vector<uint32_t> level_offset_;
+  std::vector<LeafBuffers::Part> parts_;
   cl::Kernel leaves_, nodes_;
 };
 

@@ -18,8 +18,7 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 // Words of x (or y, z) of a leaf.
 uint32_t leaf_stride(const PlyPatch& patch) { return ((patch.intervals + 3) * patch.plies + 3) / 4 * 4; }
 
-// Masked lanes load their four points too, beyond the last leaf's own.
-constexpr uint32_t kTail = W_LEAF_LANES + 3 * 8;
+uint32_t leaf_words(const PlyPatch& patch) { return W_LEAF_HEADER + 3 * leaf_stride(patch); }
 
 void write_header(const PlyPatch& patch, uint32_t* leaf) {
   const uint32_t lanes = patch.intervals * patch.plies;
@@ -38,24 +37,29 @@ void write_header(const PlyPatch& patch, uint32_t* leaf) {
 void write_headers(const Device& device, std::span<const PlyPatch> patches, const PlyTree& tree) {
   constexpr size_t kPiece = 1u << 14;
   std::vector<uint32_t> words;
-  for (size_t first = 0; first < patches.size(); first += kPiece) {
-    const size_t last = std::min(first + kPiece, patches.size()), begin = size_t(tree.leaf_offset[first]) * 4;
-    const PlyPatch& end = patches[last - 1];
-    words.assign(size_t(tree.leaf_offset[last - 1]) * 4 + W_LEAF_HEADER + 3 * leaf_stride(end) - begin, 0);
-    for (size_t i = first; i < last; ++i)
-      write_header(patches[i], words.data() + size_t(tree.leaf_offset[i]) * 4 - begin);
-    device.queue().enqueueWriteBuffer(tree.leaves.cl(), CL_TRUE, begin * 4, words.size() * 4, words.data());
+  for (const LeafBuffers::Part& part : tree.leaves.parts()) {
+    const auto place = [&](size_t i) { return size_t(tree.leaf_offset[i] - part.first_number) * 4; };
+    const size_t end = part.first_leaf + part.leaves;
+    for (size_t first = part.first_leaf; first < end; first += kPiece) {
+      const size_t last = std::min(first + kPiece, end), begin = place(first);
+      words.assign(place(last - 1) + leaf_words(patches[last - 1]) - begin, 0);
+      for (size_t i = first; i < last; ++i) write_header(patches[i], words.data() + place(i) - begin);
+      device.queue().enqueueWriteBuffer(part.words.cl(), CL_TRUE, begin * 4, words.size() * 4, words.data());
+    }
   }
 }
 
 void place_leaves(const Device& device, uint32_t nodes, const PlyTree& tree) {
   cl::Kernel place(build_program(device, "pack.cl"), "place_leaves");
   place.setArg(0, tree.nodes.cl());
-  place.setArg(1, tree.leaves.cl());
-  place.setArg(2, uint32_t(tree.leaves.count() / 4));
-  place.setArg(3, nodes);
-  device.queue().enqueueNDRangeKernel(place, cl::NullRange, device.large_global(size_t(nodes) * W_NODE_WIDTH),
-                                      device.local());
+  place.setArg(4, nodes);
+  for (const LeafBuffers::Part& part : tree.leaves.parts()) {
+    place.setArg(1, part.words.cl());
+    place.setArg(2, part.first_number);
+    place.setArg(3, part.numbers);
+    device.queue().enqueueNDRangeKernel(place, cl::NullRange, device.large_global(size_t(nodes) * W_NODE_WIDTH),
+                                        device.local());
+  }
 }
 
 void refuse_if_too_far(const PlyPatch& patch, const Box& box) {
@@ -76,24 +80,18 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
   if (updatable && !procedural.number.empty()) bug("ply tree: procedural leaves cannot be refitted");
   PlyTree tree;
   const double start = now();
-  size_t words = 0;
-  tree.leaf_offset.reserve(patches.size());
+  std::vector<uint32_t> words;
+  words.reserve(patches.size());
   for (const PlyPatch& patch : patches) {
     if (patch.plies < 1 || patch.plies > 8 || patch.intervals < 1 || patch.intervals * patch.plies > W_LEAF_LANES ||
         patch.first + patch.intervals >= patch.count)
       bug("ply tree: patch of {} x {} segments at {} of {} vertices", patch.intervals, patch.plies, patch.first,
           patch.count);
-    tree.leaf_offset.push_back(uint32_t(words / 4));
-    words += W_LEAF_HEADER + 3 * leaf_stride(patch);
+    words.push_back(leaf_words(patch));
   }
-  if (words / 4 >= (procedural.number.empty() ? 1u << 28 : W_LEAF_PROCEDURAL) ||
-      words * 4 > device.traits().max_alloc_bytes)
-    device_error("ply tree: leaves of {} MB do not fit one buffer of {}; use fewer repeats", words * 4 >> 20,
-                 device.traits().name);
-  tree.leaves = Buffer<uint32_t>(device, words + kTail);
-  ask_for_large_pages(device, tree.leaves.cl());
-  constexpr uint32_t kZeros[kTail] = {};
-  device.queue().enqueueWriteBuffer(tree.leaves.cl(), CL_TRUE, words * 4, sizeof(kZeros), kZeros);
+  tree.leaf_offset.reserve(patches.size());
+  tree.leaves = LeafBuffers(device, words, procedural.number.empty() ? 1u << 28 : W_LEAF_PROCEDURAL, tree.leaf_offset);
+  words = {};
   std::vector<uint32_t> run_of;
   run_of.reserve(4 * patches.size());
   for (size_t i = 0; i < patches.size(); ++i)
@@ -109,10 +107,14 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
     cl::Kernel pack(build_program(device, "pack.cl"), "pack_leaves");
     pack.setArg(0, runs.cl());
     pack.setArg(1, positions.cl());
-    pack.setArg(2, tree.leaves.cl());
-    pack.setArg(3, box_buffer.cl());
-    pack.setArg(4, uint32_t(patches.size()));
-    device.queue().enqueueNDRangeKernel(pack, cl::NullRange, device.large_global(patches.size()), device.local());
+    pack.setArg(6, box_buffer.cl());
+    for (const LeafBuffers::Part& part : tree.leaves.parts()) {
+      pack.setArg(2, part.words.cl());
+      pack.setArg(3, part.first_number);
+      pack.setArg(4, part.first_leaf);
+      pack.setArg(5, part.leaves);
+      device.queue().enqueueNDRangeKernel(pack, cl::NullRange, device.large_global(part.leaves), device.local());
+    }
     const std::vector<float> flat = box_buffer.read(device);
     for (size_t i = 0; i < patches.size(); ++i) {
       std::copy_n(flat.begin() + 6 * i, 3, boxes[i].lo);
@@ -133,6 +135,11 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
   place_leaves(device, uint32_t(wide.nodes()), tree);
   tree.node_cell = Buffer<uint32_t>(device, group_box.empty() ? std::vector<uint32_t>{} : wide.node_cell);
   if (updatable) tree.refit = std::make_unique<PlyRefit>(device, runs, positions, wide, tree);
+  tree.node_count = wide.nodes();
+  if (device.traits().traversal == Traversal::simt && group_box.empty()) {
+    tree.quantised = QuantisedTree(device, wide, tree.nodes);
+    if (!updatable) tree.nodes = Buffer<uint32_t>(device, 0);
+  }
   tree.build_seconds = now() - start - tree.pack_seconds;
   return tree;
 }
@@ -140,6 +147,7 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
 void refit(const Device& device, PlyTree& tree) {
   if (!tree.refit) bug("ply tree: not built to be updatable");
   tree.refit->run(device);
+  if (tree.quantised.bytes()) tree.quantised.requantise(device, tree.nodes);
   uint32_t root[W_NODE_WORDS];
   device.queue().enqueueReadBuffer(tree.nodes.cl(), CL_TRUE, 0, sizeof(root), root);
   tree.bounds = Box{};

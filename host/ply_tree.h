@@ -6,7 +6,9 @@
 
 #include "geom/wide_tree.h"
 #include "host/device.h"
+#include "host/leaf_buffers.h"
 #include "host/ply_refit.h"
+#include "host/quantised_tree.h"
 
 namespace wale {
 
@@ -33,7 +35,10 @@ struct ProceduralLeaves {
 
 /// Leaves and tree over patches, on the device.
 struct PlyTree {
-  Buffer<uint32_t> leaves, nodes;
+  LeafBuffers leaves;
+  Buffer<uint32_t> nodes;   ///< empty where they are quantised and not refitted
+  QuantisedTree quantised;  ///< for devices that traverse by Traversal::simt
+  size_t node_count = 0;
   Buffer<uint32_t> node_cell;         ///< for the cell stages only: see WideTree
   std::vector<uint32_t> leaf_offset;  ///< per patch, in 16-byte units; then the numbers of procedural leaves
   uint32_t root = 0xffffffffu;        ///< W_NONE when there is no patch
@@ -41,6 +46,10 @@ struct PlyTree {
   std::unique_ptr<PlyRefit> refit;  ///< of updatable trees
   double pack_seconds = 0, build_seconds = 0;
 
+  /// Bytes of nodes, and boxes of leaves, on the device.
+  size_t tree_bytes() const { return nodes.bytes() + node_cell.bytes() + quantised.bytes(); }
+  /// What rays go down by.
+  const Buffer<uint32_t>& ray_nodes() const { return quantised.bytes() ? quantised.nodes() : nodes; }
   /// Hit code of segment k (inside the patch) of ply p.
   uint32_t hit_code(size_t patch, uint32_t plies, uint32_t k, uint32_t p) const {
     return leaf_offset[patch] << 4 | (k * plies + p);

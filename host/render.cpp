@@ -46,7 +46,7 @@ class Job {
     const auto start = Clock::now();
     on_every_device([&](uint32_t d) {
       const Device& device = *devices[d].device;
-      const Features features = analyse(world, integrator, options.aovs, int(device.traits().lanes));
+      const Features features = analyse(world, integrator, options.aovs, device.traits());
       const uint32_t pool = pool_of(device.traits(), integrator, options);
       waves_[d] =
           std::make_unique<Wavefront>(device, *devices[d].scene, features, world.camera, pool, options.kernel_dir);

@@ -4,6 +4,7 @@
 
 #include "geom/error.h"
 #include "host/driver_crash.h"
+#include "host/features.h"
 #include "host/triangle_tree.h"
 #include "shared/visits.h"
 
@@ -48,6 +49,7 @@ FabricDevice upload(const Device& device, const World& world, LocalStage stage) 
 SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage stage)
     : device_(device),
       stage_(stage),
+      simt_(quantised_tree(device.traits(), stage)),
       procedural_(
           std::any_of(world.fabrics.begin(), world.fabrics.end(), [](const Fabric& f) { return f.procedural; })),
       fabric_(upload(device, world, stage)) {
@@ -67,6 +69,10 @@ SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage st
     tri_nodes_ = Buffer<uint32_t>(device, 0);
     tri_leaves_ = Buffer<float>(device, 0);
   }
+  if (simt_) {
+    tri_quantised_ = QuantisedTree(device, tree.order.empty() ? WideTree{} : tree.tree, tri_nodes_);
+    tri_nodes_ = Buffer<uint32_t>(device, 0);
+  }
   spheres_ = Buffer<WSphere>(device, world.spheres);
   sphere_count_ = uint32_t(world.spheres.size());
   surface_materials_ = Buffer<WSurfaceMaterial>(device, world.surface_materials);
@@ -84,16 +90,21 @@ SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage st
 
 cl_uint SceneDevice::bind_scene(cl::Kernel& kernel, cl_uint first) const {
   cl_uint i = first;
-  kernel.setArg(i++, fabric_.tree.nodes.cl());
+  kernel.setArg(i++, fabric_.tree.ray_nodes().cl());
   kernel.setArg(i++, fabric_.tree.node_cell.cl());
-  kernel.setArg(i++, fabric_.tree.leaves.cl());
+  kernel.setArg(i++, fabric_.tree.leaves.parts().front().words.cl());
   kernel.setArg(i++, fabric_.tree.root);
   kernel.setArg(i++, tri_root_);
-  kernel.setArg(i++, tri_nodes_.cl());
+  kernel.setArg(i++, simt_ ? tri_quantised_.nodes().cl() : tri_nodes_.cl());
   kernel.setArg(i++, tri_leaves_.cl());
   kernel.setArg(i++, spheres_.cl());
   kernel.setArg(i++, sphere_count_);
   kernel.setArg(i++, events_.cl());
+  if (simt_) {
+    kernel.setArg(i++, fabric_.tree.quantised.leaf_boxes().cl());
+    kernel.setArg(i++, tri_quantised_.leaf_boxes().cl());
+  }
+  if (fabric_.tree.leaves.split()) i = fabric_.tree.leaves.bind_others(kernel, i);
   if (procedural_) {
     kernel.setArg(i++, fabric_.lattice.lattice.cl());
     kernel.setArg(i++, fabric_.lattice.tiles.cl());
@@ -128,12 +139,12 @@ cl_uint SceneDevice::bind_lights(cl::Kernel& kernel, cl_uint first) const {
 
 std::map<std::string, uint64_t> SceneDevice::bytes() const {
   const uint64_t frames = fabric_.frames.bytes(), leaves = fabric_.tree.leaves.bytes();
-  const uint64_t tree = fabric_.tree.nodes.bytes() + fabric_.tree.node_cell.bytes();
+  const uint64_t tree = fabric_.tree.tree_bytes();
   return {{"ply vertices", frames},
           {"ply leaves", leaves},
           {"lattices", fabric_.lattice.bytes()},
           {"ply tree", tree},
-          {"triangles", triangles_.bytes() + tri_leaves_.bytes() + tri_nodes_.bytes()},
+          {"triangles", triangles_.bytes() + tri_leaves_.bytes() + tri_nodes_.bytes() + tri_quantised_.bytes()},
           {"environment", env_texels_.bytes() + env_cdf_.bytes()},
           {"lights", lights_.bytes() + light_cdf_.bytes() + light_triangles_.bytes()},
           {"fibre detail", fibre_details_.bytes() + fibre_offsets_.bytes() + fibre_candidates_.bytes()},

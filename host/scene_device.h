@@ -15,8 +15,11 @@ class SceneDevice {
  public:
   SceneDevice(const Device& device, const World& world, LocalStage stage = LocalStage::exact);
 
+  /// Definitions for the kernels that follow from how the world lies on the device, beside those of its features.
+  std::string options() const { return fabric_.tree.leaves.split() ? " -DW_SPLIT_LEAVES" : ""; }
+
   /// Set the arguments of W_SCENE_PARAMS / W_LIGHT_PARAMS from `first` on; return the next free index. Kernels must be
-  /// built for the same features.
+  /// built for the same features and with options().
   cl_uint bind_scene(cl::Kernel& kernel, cl_uint first) const;
   cl_uint bind_lights(cl::Kernel& kernel, cl_uint first) const;
 
@@ -41,7 +44,7 @@ class SceneDevice {
  private:
   const Device& device_;
   LocalStage stage_;
-  bool procedural_;
+  bool simt_, procedural_;
   FabricDevice fabric_;
   Buffer<WPlyMaterial> ply_materials_;
   Buffer<WFibreDetail> fibre_details_;
@@ -51,6 +54,7 @@ class SceneDevice {
   Buffer<uint32_t> ply_colors_;
   Buffer<float> triangles_;
   Buffer<uint32_t> tri_nodes_;
+  QuantisedTree tri_quantised_;
   Buffer<float> tri_leaves_;
   uint32_t tri_root_ = W_NONE;
   Buffer<WSphere> spheres_;

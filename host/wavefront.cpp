@@ -69,9 +69,11 @@ cl_uint Wavefront::bind_path(cl::Kernel& k, cl_uint first) const {
 
 void Wavefront::bind_intersect(const char* name) { scene_.bind_scene(kernel(name), bind_path(kernel(name), 1)); }
 
+std::string Wavefront::options() const { return features_.options() + scene_.options(); }
+
 void Wavefront::take_packets() {
-  if (!waiting_ || is_being_compiled(device_, waiting_->file, features_.options(), kernel_dir_)) return;
-  const cl::Program program = build_program(device_, waiting_->file, features_.options(), kernel_dir_);
+  if (!waiting_ || is_being_compiled(device_, waiting_->file, options(), kernel_dir_)) return;
+  const cl::Program program = build_program(device_, waiting_->file, options(), kernel_dir_);
   kernels_["intersect_packets"] = cl::Kernel(program, "intersect_packets");
   bind_intersect("intersect_packets");
   waiting_.reset();
@@ -80,7 +82,7 @@ void Wavefront::take_packets() {
 void Wavefront::build_programs() {
   auto programs = programs_of(wavefront_stages(features_), device_.traits().compiles_at_launch);
   const auto wait = std::find_if(programs.begin(), programs.end(), [&](const StageProgram& program) {
-    return program.can_wait && is_being_compiled(device_, program.file, features_.options(), kernel_dir_);
+    return program.can_wait && is_being_compiled(device_, program.file, options(), kernel_dir_);
   });
   if (wait != programs.end()) {
     waiting_ = *wait;
@@ -94,7 +96,7 @@ void Wavefront::build_programs() {
   for (const auto& one : programs)
     builds.push_back(std::async(policy, [&, file = one.file] {
       const auto start = Clock::now();
-      cl::Program program = build_program(device_, file, features_.options(), kernel_dir_);
+      cl::Program program = build_program(device_, file, options(), kernel_dir_);
       return std::pair(program, std::chrono::duration<double>(Clock::now() - start).count());
     }));
   for (size_t i = 0; i < programs.size(); ++i) {

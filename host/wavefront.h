@@ -59,6 +59,7 @@ class Wavefront {
   void bind_intersect(const char* name);
   /// Packets are used from the first wave on that finds them compiled; they find the same hits.
   void take_packets();
+  std::string options() const;
   cl::Kernel& kernel(const std::string& name) { return kernels_.at(name); }
   void launch(const std::string& name, size_t items, bool camera_rays = false);
   bool in_packets(uint32_t depth) const { return depth == 0 && kernels_.contains("intersect_packets"); }

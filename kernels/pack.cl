@@ -22,7 +22,7 @@ W_INLINE float3 vertex(const Ply* ply, int i) {
                : stored(ply, 3) + (stored(ply, last) - stored(ply, 2));
 }
 
-/* run: leaf offset (16-byte units), first vertex of the run's ply 0, vertices per ply, 1 if the run has ghost ends. The
+/* run: number of the leaf in its buffer (16-byte units), first vertex of the run's ply 0, vertices per ply, 1 if the run has ghost ends. The
    host has written the leaf's header but for CUTS and SPHERES. Returns the leaf's box. What happens at a joint follows
    from the vertices two before to two after it only, so that every leaf that meets the joint decides alike. */
 W_INLINE Bounds pack_leaf(uint4 run, __global const float* positions, __global uint* leaves) {
@@ -64,32 +64,40 @@ W_INLINE Bounds pack_leaf(uint4 run, __global const float* positions, __global u
   return box;
 }
 
-/* boxes: lo x,y,z, hi x,y,z. */
-__kernel void pack_leaves(__global const uint4* runs, __global const float* positions, __global uint* leaves,
-                          __global float* boxes, uint count) {
-  const uint i = get_global_id(0);
-  if (i >= count) return;
-  const Bounds box = pack_leaf(runs[i], positions, leaves);
+/* Run i of a buffer of leaves whose first leaf has the number `base`. */
+W_INLINE uint4 run_in_buffer(__global const uint4* runs, uint i, uint base) {
+  uint4 run = runs[i];
+  run.x -= base;
+  return run;
+}
+
+/* Runs first .. first + count - 1 are those of one buffer of leaves. boxes: lo x,y,z, hi x,y,z. */
+__kernel void pack_leaves(__global const uint4* runs, __global const float* positions, __global uint* leaves, uint base,
+                          uint first, uint count, __global float* boxes) {
+  const uint i = first + get_global_id(0);
+  if (i - first >= count) return;
+  const Bounds box = pack_leaf(run_in_buffer(runs, i, base), positions, leaves);
   vstore3(box.lo, 2 * (size_t)i, boxes);
   vstore3(box.hi, 2 * (size_t)i + 1, boxes);
 }
 
-/* Tells every leaf of the `nodes` where the tree holds it. `leaves_end`, in 16-byte units: from there on leaf numbers are
-   those of procedural leaves, which have no word for it. */
-__kernel void place_leaves(__global const uint* nodes, __global uint* leaves, uint leaves_end, uint count) {
+/* Tells the leaves of one buffer, of numbers `base` to `base + numbers`, where the tree holds them; procedural leaves have
+   no word for it. */
+__kernel void place_leaves(__global const uint* nodes, __global uint* leaves, uint base, uint numbers, uint count) {
   const uint place = get_global_id(0), node = place / W_NODE_WIDTH;
   if (node >= count) return;
   const uint code = nodes[(size_t)node * W_NODE_WORDS + W_NODE_CHILD + place % W_NODE_WIDTH];
-  if (code == W_NONE || !(code & W_CHILD_LEAF) || (code & ~W_CHILD_LEAF) >= leaves_end) return;
-  leaves[((size_t)(code & ~W_CHILD_LEAF) << 2) + W_LEAF_PLACE] = place;
+  const uint number = (code & ~W_CHILD_LEAF) - base;
+  if (code == W_NONE || !(code & W_CHILD_LEAF) || number >= numbers) return;
+  leaves[((size_t)number << 2) + W_LEAF_PLACE] = place;
 }
 
 /* Packs again and writes each leaf's box where the tree holds it. Widened as by build_wide_tree. */
 __kernel void refit_leaves(__global const uint4* runs, __global const float* positions, __global uint* leaves,
-                           __global float* nodes, uint count) {
-  const uint i = get_global_id(0);
-  if (i >= count) return;
-  const uint4 run = runs[i];
+                           uint base, uint first, uint count, __global float* nodes) {
+  const uint i = first + get_global_id(0);
+  if (i - first >= count) return;
+  const uint4 run = run_in_buffer(runs, i, base);
   const Bounds box = pack_leaf(run, positions, leaves);
   const float3 lo = box.lo - (fabs(box.lo) * 4.8e-7f + 1e-30f), hi = box.hi + (fabs(box.hi) * 4.8e-7f + 1e-30f);
   const uint place = leaves[((size_t)run.x << 2) + W_LEAF_PLACE];

@@ -179,7 +179,7 @@ int main(int argc, char** argv) {
   const double segments = double(cloth.segments());
   fmt::print("{} {}, Embree {}\n", device.traits().name, device.traits().driver, RTC_VERSION_STRING);
   fmt::print("segments {}\n\n| | Wale | Embree round | ratio |\n| --- | --- | --- | --- |\n", cloth.segments());
-  const double bytes = double(tracer.tree().leaves.bytes() + tracer.tree().nodes.bytes());
+  const double bytes = double(tracer.tree().leaves.bytes() + tracer.tree().tree_bytes());
   fmt::print("| bytes a segment | {:.1f} | {:.1f} | {:.2f} |\n", bytes / segments, double(peer.bytes) / segments,
              bytes / double(peer.bytes));
 

@@ -196,7 +196,7 @@ int main(int argc, char** argv) {
     {
       PlyTree tree;
       ours = time_of([&] { tree = build_ply_tree(device, patches, still.points()); });
-      trace_bytes = tree.leaves.bytes() + tree.nodes.bytes() + tree.node_cell.bytes();
+      trace_bytes = tree.leaves.bytes() + tree.tree_bytes();
     }
     tree_row.add(ours, {});
     for (int i = 0; i < kPeers; ++i) {

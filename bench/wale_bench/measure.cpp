@@ -51,7 +51,7 @@ FabricResult measure(const Device& device, const Workload& workload, const Loade
   out.patches = fabric.patch_count;
   out.nodes = fabric.node_count;
   const double segments = double(std::max<size_t>(1, out.segments));
-  out.trace_bytes = double(fabric.tree.leaves.bytes() + fabric.tree.nodes.bytes()) / segments;
+  out.trace_bytes = double(fabric.tree.leaves.bytes() + fabric.tree.tree_bytes()) / segments;
   out.shade_bytes = out.trace_bytes + double(fabric.frames.bytes()) / segments;
 
   IntegratorScene integrator = workload.scene.integrator;
@@ -59,7 +59,7 @@ FabricResult measure(const Device& device, const Workload& workload, const Loade
   RenderOptions render_options;
   render_options.spp = integrator.spp;
   render_options.kernel_dir = options.kernel_dir;
-  const Features features = analyse(world, integrator, false, int(device.traits().lanes));
+  const Features features = analyse(world, integrator, false, device.traits());
 
   RayRecord record;
   render_options.record = &record;

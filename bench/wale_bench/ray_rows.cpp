@@ -75,7 +75,7 @@ void RayReplay::count_visits() {
   counting.traits().build_options += " -DW_COUNT_VISITS";
   Wavefront wavefront(counting, scene_, features_, world_.camera, pool_, kernel_dir_);
   const PlyTree& tree = scene_.fabric().tree;
-  const double node_bytes = double(tree.nodes.bytes()) / double(std::max<size_t>(1, scene_.fabric().node_count));
+  const double node_bytes = double(tree.ray_nodes().bytes()) / double(std::max<size_t>(1, tree.node_count));
   const double leaf_bytes = double(tree.leaves.bytes()) / double(std::max<size_t>(1, tree.leaf_offset.size()));
   for (const RayBatch& batch : record_.batches) {
     wavefront.load(batch);

@@ -32,6 +32,21 @@ typedef int32_t w_int;
 #define W_CHILD_CELL 0x40000000u
 #define W_CHILD_INDEX 0x3fffffffu
 
+/* --- quantised node, for one ray per work-item (traverse_simt.clh) -------------------------------------------------------
+   One W_NODE_WORDS node in 128 bytes, a line of a GPU's cache; nodes keep their numbers. Plane q of axis k lies at
+   fma(q, 2^(E_k - 127), origin_k), rounded as float is: that value, not the real one, is outside of the exact plane.
+   Inner children, in the order of their slots, are node FIRST_NODE and what follows; leaves are leaf boxes FIRST_LEAF
+   and what follows. */
+#define W_QUANTISED_WORDS 32
+#define W_QUANTISED_ORIGIN 0     /* x, y, z, floats */
+#define W_QUANTISED_EXPONENTS 3  /* E_x | E_y << 8 | E_z << 16 */
+#define W_QUANTISED_FIRST_NODE 4
+#define W_QUANTISED_FIRST_LEAF 5
+#define W_QUANTISED_SLOTS 6      /* bit s: slot s holds a child; bit 16+s: that is a node */
+#define W_QUANTISED_PLANES 8     /* 16 bytes each of lo x,y,z, hi x,y,z */
+/* Leaf box: lo x,y,z, offset of the leaf in 16-byte units, hi x,y,z, 0; the very planes of the tree's node. */
+#define W_LEAF_BOX_WORDS 8
+
 /* --- patch leaf (plies) --------------------------------------------------------------------------------------------
    `intervals` consecutive segments of all n plies of one yarn. Lane l = k*n + p is segment k of ply p. Header of
    W_LEAF_HEADER words, then x[S], y[S], z[S] of the points: point (k, p) at index k*n + p for k = 0 .. intervals+2,
@@ -39,6 +54,7 @@ typedef int32_t w_int;
    next) at l, l+n, l+2n, l+3n. S = (intervals+3)*n rounded up to a multiple of 4; masked lanes read what follows, and
    the buffer ends in words that no leaf owns. Missing neighbours at open ends repeat the end vertex. */
 #define W_LEAF_LANES 16
+#define W_LEAF_BUFFERS 8 /* most buffers that leaves are spread over, where one may not hold them */
 #define W_LEAF_HEADER 12
 #define W_LEAF_RADIUS 0   /* float, metres */
 #define W_LEAF_SEGMENT 1  /* segment id of lane 0: the vertex id of its start */

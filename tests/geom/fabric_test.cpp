@@ -306,7 +306,8 @@ TEST(Fabric, ThreadsChangeNothing) {
       ASSERT_EQ(a.anchors.size(), b.anchors.size());
       EXPECT_EQ(std::memcmp(a.anchors.data(), b.anchors.data(), a.anchors.size() * sizeof(Anchor)), 0);
       ASSERT_EQ(a.place.size(), b.place.size());
-      if (spec.places) EXPECT_EQ(std::memcmp(&a.place[0], &b.place[0], a.place.size() * sizeof(StrandPlace)), 0);
+      EXPECT_EQ(a.place.empty(), !spec.places);
+      EXPECT_EQ(std::memcmp(a.place.data(), b.place.data(), a.place.size() * sizeof(StrandPlace)), 0);
       ASSERT_EQ(a.runs.size(), b.runs.size());
       for (size_t r = 0; r < a.runs.size(); ++r) {
         const auto all = [](const PlyRun& run) {

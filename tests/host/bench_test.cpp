@@ -43,7 +43,8 @@ class BenchRays : public testing::Test {
 };
 
 TEST_F(BenchRays, ReplayFindsWhatTheRenderFoundBitForBit) {
-  Wavefront wavefront(device(), scene_, analyse(world_, workload_.scene.integrator, false, 16), world_.camera, 1024);
+  Wavefront wavefront(device(), scene_, analyse(world_, workload_.scene.integrator, false, device().traits()),
+                      world_.camera, 1024);
   std::array<size_t, 3> batches{};
   for (const RayBatch& batch : record_.batches) {
     ++batches[size_t(batch.kind)];

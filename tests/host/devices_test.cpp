@@ -36,6 +36,13 @@ TEST_F(CliDevices, NumbersThatAreNone) {
                        "--device all: only a render uses several devices; give one number, for example --device 0"));
 }
 
+TEST_F(CliDevices, TraversalsThatAreNone) {
+  EXPECT_TRUE(contains(refused({"plan", scene_}, 1, {"WALE_TRAVERSAL=gpu"}),
+                       "WALE_TRAVERSAL: gpu: expected lanes or simt, or nothing for the device's own"));
+  EXPECT_TRUE(contains(run_wale({"devices"}, {"WALE_TRAVERSAL=simt"}).out, "one ray per work-item"));
+  EXPECT_TRUE(contains(run_wale({"devices"}, {"WALE_TRAVERSAL=lanes"}).out, "lanes"));
+}
+
 TEST_F(CliDevices, SharesStandInTheStatistics) {
   const Outcome run = run_wale({"render", scene_, "-o", at("a.png"), "--device", "all", "--spp", "64", "--size",
                                 "64x64", "--set", "integrator.pool=1024", "--stats", at("s.json")},

@@ -74,7 +74,9 @@ TEST(Devices, WhatIsForeseenIsWhatIsFound) {
     const Scene scene = read_scene(folder.write(
         "scene.json", R"({"wale": 1, "units": "mm", "fabrics": [)" + fabric + c.fabric + "]" + c.more + "}"));
     const World world = build_world(scene, {});
-    const Features foreseen = foresee(scene, true, 16), found = analyse(world, scene.integrator, true, 16);
+    DeviceTraits traits;
+    traits.lanes = 16;
+    const Features foreseen = foresee(scene, true, traits), found = analyse(world, scene.integrator, true, traits);
     EXPECT_EQ(foreseen.options(), found.options()) << c.fabric << c.more;
     const std::vector<Stage> a = geometry_stages(foreseen), b = geometry_stages(found);
     for (size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].used, b[i].used) << a[i].file << c.fabric;

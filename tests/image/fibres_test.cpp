@@ -70,10 +70,16 @@ bool stage_used(const Features& features, const std::string& file) {
   return false;
 }
 
+DeviceTraits test_traits() {
+  DeviceTraits traits;
+  traits.lanes = 16;
+  return traits;
+}
+
 TEST(FibreFeatures, AreThereOnlyForScenesThatHaveThem) {
   const Loaders loaders;
   const auto features_of = [&](const Scene& scene) {
-    return analyse(build_world(scene, loaders), scene.integrator, false, 16);
+    return analyse(build_world(scene, loaders), scene.integrator, false, test_traits());
   };
   Scene plain = swatch(8, Detail::maps);
   plain.fabrics[0].spec.flyaways = {};

@@ -40,7 +40,7 @@ TEST_P(AxisRays, AreCountedInsideTheRadiusAlone) {
 
 INSTANTIATE_TEST_SUITE_P(Builds, AxisRays,
                          testing::Values("-DW_LANES=1", "-DW_LANES=8", "-DW_LANES=16", "-DW_LANES=16 -DW_PORTABLE",
-                                         "double"));
+                                         "-DW_LANES=1 -DW_SIMT", "double"));
 
 }  // namespace
 }  // namespace wale::test

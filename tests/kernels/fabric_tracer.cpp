@@ -18,7 +18,25 @@ constexpr const char* kKernels = R"(
     __global const float* base_uv, __global const uint* cell_triangle_offsets, __global const uint* cell_triangles, \
     __global const uint* cell_segment_offsets, __global const uint* cell_segments, __global const WGrid* grids, \
     __global const uint* grid_of_cell, __global const float* lattice, __global const uint* tiles, uint patch_bits, \
-    __global const TestRay* rays, uint count
+    __global const TestRay* rays, uint count SIMT LEAVES
+#ifdef W_SIMT
+#define SIMT , __global const uint* leaf_boxes
+#define BOXES s.leaf_boxes = leaf_boxes;
+#else
+#define SIMT
+#define BOXES
+#endif
+#ifdef W_SPLIT_LEAVES
+#define LEAVES , __global const uint* leaves1, __global const uint* leaves2, __global const uint* leaves3, \
+    __global const uint* leaves4, __global const uint* leaves5, __global const uint* leaves6, \
+    __global const uint* leaves7, uint leaf_bits
+#define SPLIT __global const uint* more[] = {leaves1, leaves2, leaves3, leaves4, leaves5, leaves6, leaves7}; \
+    for (uint b = 0; b < W_LEAF_BUFFERS - 1; ++b) s.more_leaves[b] = more[b]; \
+    s.leaf_bits = leaf_bits;
+#else
+#define LEAVES
+#define SPLIT
+#endif
 #if W_LOCAL_STAGE
 #define CELLS s.base_positions = base_positions; s.base_indices = base_indices; s.base_uv = base_uv; \
     s.cell_triangle_offsets = cell_triangle_offsets; s.cell_triangles = cell_triangles; \
@@ -33,7 +51,7 @@ constexpr const char* kKernels = R"(
 #define LATTICE
 #endif
 #define SCENE WScene s; s.nodes = nodes; s.node_cell = node_cell; s.leaves = leaves; s.ply_root = 0; \
-    s.tri_root = W_NONE; s.spheres_count = 0; s.counters = counters; CELLS LATTICE
+    s.tri_root = W_NONE; s.spheres_count = 0; s.counters = counters; CELLS LATTICE SPLIT BOXES
 __kernel void trace(PARAMS, __global TestHit* hits) {
   const uint i = get_global_id(0);
   if (i >= count) return;
@@ -66,8 +84,6 @@ __kernel void surfaces(PARAMS, __global const TestHit* hits, __global const floa
 }
 )";
 
-constexpr cl_uint kFirstOwn = 18;  // first argument behind PARAMS
-
 FabricDevice upload(const Device& device, const Fabric& fabric, float tau, LocalStage stage, bool updatable) {
   const FabricInput input{&fabric, 0, tau};
   return upload_fabrics(device, {&input, 1}, {0, 0, 0}, stage, updatable);
@@ -98,25 +114,31 @@ FabricTracer::FabricTracer(const Device& device, const Fabric& fabric, float tau
   counters_.fill(device, 0);
 }
 
-cl::Kernel FabricTracer::bound(const char* name, const Buffer<Ray>& rays, size_t count, bool twice) const {
+cl::Kernel FabricTracer::bound(const char* name, const Buffer<Ray>& rays, size_t count, bool twice,
+                               cl_uint* next) const {
+  const bool simt = fabric_.tree.quantised.bytes() > 0;
   const std::string lanes = twice ? "-DW_DOUBLE -DW_LANES=1" : fmt::format("-DW_LANES={}", device_.traits().lanes);
   const std::string options =
       fmt::format("-DW_HAS_PLIES {} -DW_LOCAL_STAGE={}{}", lanes, int(stage_), fibres_ ? " -DW_HAS_FIBRES" : "") +
-      (procedural_ ? " -DW_HAS_PROCEDURAL" : "");
+      (procedural_ ? " -DW_HAS_PROCEDURAL" : "") + (simt ? " -DW_SIMT" : "") +
+      (fabric_.tree.leaves.split() ? " -DW_SPLIT_LEAVES" : "");
   auto& program = programs_[twice];
   if (!program()) program = build_program_text(device_, std::string(kTraceTypes) + kKernels, options);
   cl::Kernel kernel(program, name);
   const FabricDevice& f = fabric_;
   cl_uint arg = 0;
   for (const cl::Buffer& buffer :
-       {f.tree.nodes.cl(), f.tree.node_cell.cl(), f.tree.leaves.cl(), counters_.cl(), f.base_positions.cl(),
-        f.base_indices.cl(), f.base_uv.cl(), f.cell_triangle_offsets.cl(), f.cell_triangles.cl(),
+       {f.tree.ray_nodes().cl(), f.tree.node_cell.cl(), f.tree.leaves.parts().front().words.cl(), counters_.cl(),
+        f.base_positions.cl(), f.base_indices.cl(), f.base_uv.cl(), f.cell_triangle_offsets.cl(), f.cell_triangles.cl(),
         f.cell_segment_offsets.cl(), f.cell_segments.cl(), f.grids.cl(), f.grid_of_cell.cl(), f.lattice.lattice.cl(),
         f.lattice.tiles.cl()})
     kernel.setArg(arg++, buffer);
   kernel.setArg(arg++, f.lattice.patch_bits);
   kernel.setArg(arg++, rays.cl());
   kernel.setArg(arg++, uint32_t(count));
+  if (simt) kernel.setArg(arg++, f.tree.quantised.leaf_boxes().cl());
+  if (f.tree.leaves.split()) arg = f.tree.leaves.bind_others(kernel, arg);
+  *next = arg;
   return kernel;
 }
 
@@ -124,8 +146,9 @@ template <typename Real>
 std::vector<HitOf<Real>> FabricTracer::trace_as(const std::vector<Ray>& rays) const {
   const Buffer<Ray> in(device_, rays);
   const Buffer<HitOf<Real>> out(device_, rays.size());
-  cl::Kernel kernel = bound("trace", in, rays.size(), std::is_same_v<Real, double>);
-  kernel.setArg(kFirstOwn, out.cl());
+  cl_uint own = 0;
+  cl::Kernel kernel = bound("trace", in, rays.size(), std::is_same_v<Real, double>, &own);
+  kernel.setArg(own, out.cl());
   device_.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device_.global(rays.size()), device_.local());
   return out.read(device_);
 }
@@ -136,10 +159,11 @@ std::vector<SurfaceOf<Real>> FabricTracer::surfaces_as(const std::vector<Ray>& r
   const Buffer<Ray> in(device_, rays);
   const Buffer<HitOf<Real>> hit_buffer(device_, hits);
   const Buffer<SurfaceOf<Real>> out(device_, rays.size());
-  cl::Kernel kernel = bound("surfaces", in, rays.size(), std::is_same_v<Real, double>);
-  kernel.setArg(kFirstOwn, hit_buffer.cl());
-  kernel.setArg(kFirstOwn + 1, fabric_.frames.cl());
-  kernel.setArg(kFirstOwn + 2, out.cl());
+  cl_uint own = 0;
+  cl::Kernel kernel = bound("surfaces", in, rays.size(), std::is_same_v<Real, double>, &own);
+  kernel.setArg(own, hit_buffer.cl());
+  kernel.setArg(own + 1, fabric_.frames.cl());
+  kernel.setArg(own + 2, out.cl());
   device_.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device_.global(rays.size()), device_.local());
   return out.read(device_);
 }
@@ -159,8 +183,9 @@ std::vector<SurfaceOf<double>> FabricTracer::surfaces_in_double(const std::vecto
 double FabricTracer::seconds(const std::vector<Ray>& rays) const {
   const Buffer<Ray> in(device_, rays);
   const Buffer<float> out(device_, rays.size());
-  cl::Kernel kernel = bound("nearest", in, rays.size(), false);
-  kernel.setArg(kFirstOwn, out.cl());
+  cl_uint own = 0;
+  cl::Kernel kernel = bound("nearest", in, rays.size(), false, &own);
+  kernel.setArg(own, out.cl());
   cl::Event event;
   device_.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device_.global(rays.size()), device_.local(), nullptr,
                                        &event);
@@ -172,8 +197,9 @@ double FabricTracer::seconds(const std::vector<Ray>& rays) const {
 double FabricTracer::cpu_seconds(const std::vector<Ray>& rays, const char* name) const {
   const Buffer<Ray> in(device_, rays);
   const Buffer<float> out(device_, rays.size());
-  cl::Kernel kernel = bound(name, in, rays.size(), false);
-  kernel.setArg(kFirstOwn, out.cl());
+  cl_uint own = 0;
+  cl::Kernel kernel = bound(name, in, rays.size(), false, &own);
+  kernel.setArg(own, out.cl());
   const std::clock_t start = std::clock();
   device_.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device_.global(rays.size()), device_.local());
   device_.queue().finish();

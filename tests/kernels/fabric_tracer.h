@@ -40,7 +40,8 @@ class FabricTracer {
   std::vector<float> positions() const;
 
  private:
-  cl::Kernel bound(const char* name, const Buffer<Ray>& rays, size_t count, bool twice) const;
+  // *next: first argument of the kernel's own.
+  cl::Kernel bound(const char* name, const Buffer<Ray>& rays, size_t count, bool twice, cl_uint* next) const;
   template <typename Real>
   std::vector<HitOf<Real>> trace_as(const std::vector<Ray>& rays) const;
   template <typename Real>

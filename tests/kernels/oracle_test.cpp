@@ -71,8 +71,9 @@ TEST(Oracle, ClosestAndOccludedAgreeAtEveryWidth) {
     const std::vector<Hit> second = tracer.trace(bounce, "-DW_LANES=16");
     compare(c, tracer, oracle, bounce, second, "bounce");
     EXPECT_EQ(tracer.stack_overflows(), 0u);
-    for (const char* options : {"-DW_LANES=1", "-DW_LANES=8", "-DW_LANES=16 -DW_PORTABLE", "-DW_LANES=8 -DW_PORTABLE",
-                                "-DW_LANES=1 -DW_PORTABLE"}) {
+    for (const char* options :
+         {"-DW_LANES=1", "-DW_LANES=8", "-DW_LANES=16 -DW_PORTABLE", "-DW_LANES=8 -DW_PORTABLE",
+          "-DW_LANES=1 -DW_PORTABLE", "-DW_LANES=1 -DW_SIMT", "-DW_LANES=1 -DW_SIMT -DW_PORTABLE"}) {
       const auto same = [](const std::vector<Hit>& a, const std::vector<Hit>& b) {
         size_t differ = 0;
         for (size_t i = 0; i < a.size(); ++i)

@@ -52,7 +52,7 @@ const std::string& lanes() {
 TEST(RayValidity, BadRaysMissAndAreCounted) {
   Cloth cloth;
   const std::vector<Ray> bad = spoilt(cloth.good[0]);
-  for (const char* options : {"-DW_LANES=1", "-DW_LANES=16", "-DW_LANES=16 -DW_PORTABLE"}) {
+  for (const char* options : {"-DW_LANES=1", "-DW_LANES=16", "-DW_LANES=16 -DW_PORTABLE", "-DW_LANES=1 -DW_SIMT"}) {
     const uint32_t before = cloth.tracer.events()[W_EVENT_RAY];
     const std::vector<Hit> hits = cloth.tracer.trace(bad, options);
     for (size_t i = 0; i < bad.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "host/program.h"
+#include "shared/visits.h"
 #include "tests/kernels/trace_kernels.h"
 
 namespace wale::test {
@@ -17,8 +18,13 @@ constexpr const char* kTrace = R"(
 #if W_LANES == 16
 #include "geometry/traverse_packet.clh"
 #endif
-W_INLINE WScene scene_of(__global const uint* nodes, __global const uint* leaves, uint root, __global uint* counters) {
+#define PARAMS __global const uint* nodes, __global const uint* leaves, uint root, __global uint* counters, \
+    __global const uint* leaf_boxes
+W_INLINE WScene scene_of(PARAMS) {
   WScene s;
+#ifdef W_SIMT
+  s.leaf_boxes = leaf_boxes;
+#endif
   s.nodes = nodes;
   s.leaves = leaves;
   s.ply_root = root;
@@ -27,11 +33,10 @@ W_INLINE WScene scene_of(__global const uint* nodes, __global const uint* leaves
   s.counters = counters;
   return s;
 }
-__kernel void trace(__global const uint* nodes, __global const uint* leaves, uint root, __global uint* counters,
-                    __global const TestRay* rays, __global TestHit* hits, uint count) {
+__kernel void trace(PARAMS, __global const TestRay* rays, __global TestHit* hits, uint count) {
   const uint i = get_global_id(0);
   if (i >= count) return;
-  const WScene s = scene_of(nodes, leaves, root, counters);
+  const WScene s = scene_of(nodes, leaves, root, counters, leaf_boxes);
   const WRay r = ray_of(rays + i);
   write_hit(&s, &r, hits + i);
 }
@@ -44,11 +49,10 @@ uint trace_packet(const WScene* s, __global const TestRay* rays, uint count, uin
   w_closest_packet(s, alone, own, packet);
   return own;
 }
-__kernel void trace_packets(__global const uint* nodes, __global const uint* leaves, uint root,
-                            __global uint* counters, __global const TestRay* rays, __global TestHit* hits, uint count) {
+__kernel void trace_packets(PARAMS, __global const TestRay* rays, __global TestHit* hits, uint count) {
   const uint first = get_global_id(0) * W_LANES;
   if (first >= count) return;
-  const WScene s = scene_of(nodes, leaves, root, counters);
+  const WScene s = scene_of(nodes, leaves, root, counters, leaf_boxes);
   WPacket packet;
   const uint own = trace_packet(&s, rays, count, first, &packet);
   for (uint i = 0; i < own; ++i) {
@@ -61,11 +65,10 @@ __kernel void trace_packets(__global const uint* nodes, __global const uint* lea
     hits[first + i].occluded = 0;
   }
 }
-__kernel void closest_packets(__global const uint* nodes, __global const uint* leaves, uint root,
-                              __global uint* counters, __global const TestRay* rays, __global float* out, uint count) {
+__kernel void closest_packets(PARAMS, __global const TestRay* rays, __global float* out, uint count) {
   const uint first = get_global_id(0) * W_LANES;
   if (first >= count) return;
-  const WScene s = scene_of(nodes, leaves, root, counters);
+  const WScene s = scene_of(nodes, leaves, root, counters, leaf_boxes);
   WPacket packet;
   const uint own = trace_packet(&s, rays, count, first, &packet);
   for (uint i = 0; i < own; ++i) {
@@ -75,30 +78,27 @@ __kernel void closest_packets(__global const uint* nodes, __global const uint* l
   }
 }
 #endif
-__kernel void closest(__global const uint* nodes, __global const uint* leaves, uint root, __global uint* counters,
-                      __global const TestRay* rays, __global float* out, uint count) {
+__kernel void closest(PARAMS, __global const TestRay* rays, __global float* out, uint count) {
   const uint i = get_global_id(0);
   if (i >= count) return;
-  const WScene s = scene_of(nodes, leaves, root, counters);
+  const WScene s = scene_of(nodes, leaves, root, counters, leaf_boxes);
   const WRay r = ray_of(rays + i);
   const WHit hit = w_closest(&s, &r);
   out[2 * i] = (float)hit.t;
   out[2 * i + 1] = as_float(hit.code);
 }
-__kernel void occluded(__global const uint* nodes, __global const uint* leaves, uint root, __global uint* counters,
-                       __global const TestRay* rays, __global float* out, uint count) {
+__kernel void occluded(PARAMS, __global const TestRay* rays, __global float* out, uint count) {
   const uint i = get_global_id(0);
   if (i >= count) return;
-  const WScene s = scene_of(nodes, leaves, root, counters);
+  const WScene s = scene_of(nodes, leaves, root, counters, leaf_boxes);
   const WRay r = ray_of(rays + i);
   out[i] = w_occluded(&s, &r);
 }
-__kernel void surfaces(__global const uint* nodes, __global const uint* leaves, uint root, __global uint* counters,
-                       __global const TestRay* rays, __global const TestHit* hits, uint count,
+__kernel void surfaces(PARAMS, __global const TestRay* rays, __global const TestHit* hits, uint count,
                        __global const float* frames, __global TestSurface* out) {
   const uint i = get_global_id(0);
   if (i >= count || hits[i].kind != W_HIT_PLY) return;
-  const WScene s = scene_of(nodes, leaves, root, counters);
+  const WScene s = scene_of(nodes, leaves, root, counters, leaf_boxes);
   const WRay r = ray_of(rays + i);
   write_surface(&s, frames, &r, hits + i, out + i);
 }
@@ -113,6 +113,18 @@ const cl::Program& program(const std::string& options) {
 }
 
 dvec3 unit(dvec3 a) { return glm::length(a) > 0 ? glm::normalize(a) : dvec3(1, 0, 0); }
+
+// The tracer has both forms of the tree, whatever the device's own traversal.
+Device by_lanes(Device device) {
+  device.traits().traversal = Traversal::lanes;
+  return device;
+}
+
+WideTree words_only(std::vector<uint32_t> words) {
+  WideTree tree;
+  tree.words = std::move(words);
+  return tree;
+}
 
 constexpr const char* kDoubleBuild = "-DW_DOUBLE -DW_LANES=1";
 
@@ -210,10 +222,23 @@ Strands stockinette(uint32_t rows, uint32_t loops, uint32_t steps_per_loop, doub
 Tracer::Tracer(const Device& device, const Strands& strands)
     : device_(device),
       frames_(device, strands.frames),
-      tree_(build_ply_tree(device, strands.patches, Buffer<float>(device, strands.positions))),
+      tree_(build_ply_tree(by_lanes(device), strands.patches, Buffer<float>(device, strands.positions))),
+      quantised_(device, words_only(tree_.nodes.read(device)), tree_.nodes),
       leaves_(tree_.leaves.read(device)),
-      counters_(device, W_EVENT_COUNT) {
+      counters_(device, W_COUNTER_COUNT) {
   counters_.fill(device, 0);
+}
+
+cl::Kernel Tracer::bound(const std::string& options, const char* name, const Buffer<Ray>& rays) const {
+  cl::Kernel kernel(program(options), name);
+  const bool simt = options.find("W_SIMT") != std::string::npos;
+  kernel.setArg(0, simt ? quantised_.nodes().cl() : tree_.nodes.cl());
+  kernel.setArg(1, tree_.leaves.cl());
+  kernel.setArg(2, tree_.root);
+  kernel.setArg(3, counters_.cl());
+  kernel.setArg(4, quantised_.leaf_boxes().cl());
+  kernel.setArg(5, rays.cl());
+  return kernel;
 }
 
 template <typename Real>
@@ -221,14 +246,9 @@ std::vector<HitOf<Real>> Tracer::trace_as(const std::vector<Ray>& rays, const st
                                           size_t rays_per_item) {
   const Buffer<Ray> in(device_, rays);
   const Buffer<HitOf<Real>> out(device_, rays.size());
-  cl::Kernel kernel(program(options), name);
-  kernel.setArg(0, tree_.nodes.cl());
-  kernel.setArg(1, tree_.leaves.cl());
-  kernel.setArg(2, tree_.root);
-  kernel.setArg(3, counters_.cl());
-  kernel.setArg(4, in.cl());
-  kernel.setArg(5, out.cl());
-  kernel.setArg(6, uint32_t(rays.size()));
+  cl::Kernel kernel = bound(options, name, in);
+  kernel.setArg(6, out.cl());
+  kernel.setArg(7, uint32_t(rays.size()));
   const size_t items = (rays.size() + rays_per_item - 1) / rays_per_item;
   device_.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device_.global(items), device_.local());
   return out.read(device_);
@@ -247,14 +267,9 @@ std::vector<HitOf<double>> Tracer::trace_in_double(const std::vector<Ray>& rays)
 double Tracer::time(const std::vector<Ray>& rays, const std::string& options, const std::string& name) {
   const Buffer<Ray> in(device_, rays);
   const Buffer<float> out(device_, 2 * rays.size());
-  cl::Kernel kernel(program(options), name.c_str());
-  kernel.setArg(0, tree_.nodes.cl());
-  kernel.setArg(1, tree_.leaves.cl());
-  kernel.setArg(2, tree_.root);
-  kernel.setArg(3, counters_.cl());
-  kernel.setArg(4, in.cl());
-  kernel.setArg(5, out.cl());
-  kernel.setArg(6, uint32_t(rays.size()));
+  cl::Kernel kernel = bound(options, name.c_str(), in);
+  kernel.setArg(6, out.cl());
+  kernel.setArg(7, uint32_t(rays.size()));
   const size_t rays_per_item = name == "closest_packets" ? W_NODE_WIDTH : 1;
   const size_t items = (rays.size() + rays_per_item - 1) / rays_per_item;
   const std::clock_t start = std::clock();
@@ -269,16 +284,11 @@ std::vector<SurfaceOf<Real>> Tracer::surfaces_as(const std::vector<Ray>& rays, c
   const Buffer<Ray> in(device_, rays);
   const Buffer<HitOf<Real>> hit_buffer(device_, hits);
   const Buffer<SurfaceOf<Real>> out(device_, rays.size());
-  cl::Kernel kernel(program(options), "surfaces");
-  kernel.setArg(0, tree_.nodes.cl());
-  kernel.setArg(1, tree_.leaves.cl());
-  kernel.setArg(2, tree_.root);
-  kernel.setArg(3, counters_.cl());
-  kernel.setArg(4, in.cl());
-  kernel.setArg(5, hit_buffer.cl());
-  kernel.setArg(6, uint32_t(rays.size()));
-  kernel.setArg(7, frames_.cl());
-  kernel.setArg(8, out.cl());
+  cl::Kernel kernel = bound(options, "surfaces", in);
+  kernel.setArg(6, hit_buffer.cl());
+  kernel.setArg(7, uint32_t(rays.size()));
+  kernel.setArg(8, frames_.cl());
+  kernel.setArg(9, out.cl());
   device_.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device_.global(rays.size()), device_.local());
   return out.read(device_);
 }

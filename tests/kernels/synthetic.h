@@ -59,24 +59,30 @@ using Surface = SurfaceOf<float>;
 class Tracer {
  public:
   Tracer(const Device& device, const Strands& strands);
+  /// With -DW_SIMT in `options`, down the quantised nodes.
   std::vector<Hit> trace(const std::vector<Ray>& rays, const std::string& options);
   /// Nearest hits of packets of 16 rays in the order given; `occluded` is left 0.
   std::vector<Hit> trace_packets(const std::vector<Ray>& rays);
   /// The same source built with double arithmetic: the device must have fp64.
   std::vector<HitOf<double>> trace_in_double(const std::vector<Ray>& rays);
-  /// CPU seconds, of all threads, of one launch of kernel `closest`, `closest_packets` or `occluded` over the rays, without copies.
+  /// CPU seconds, of all threads, of one launch of kernel `closest`, `closest_packets` or `occluded` over the rays,
+  /// without copies.
   double time(const std::vector<Ray>& rays, const std::string& options, const std::string& kernel);
   std::vector<Surface> surfaces(const std::vector<Ray>& rays, const std::vector<Hit>& hits);
   std::vector<SurfaceOf<double>> surfaces_in_double(const std::vector<Ray>& rays,
                                                     const std::vector<HitOf<double>>& hits);
   /// Id of the segment behind a hit code.
   uint32_t segment(uint32_t code) const;
-  /// The device's counters of rare events (W_EVENT_*) since the tracer was made.
+  /// The device's counters of rare events (W_EVENT_*), and of visits (W_VISIT_*) where options had -DW_COUNT_VISITS,
+  /// since the tracer was made.
   std::vector<uint32_t> events() const;
   uint32_t stack_overflows() const { return events()[W_EVENT_STACK_FULL]; }
+  const QuantisedTree& quantised() const { return quantised_; }
   const PlyTree& tree() const { return tree_; }
 
  private:
+  // All but the kernel's own arguments, which start at 6.
+  cl::Kernel bound(const std::string& options, const char* name, const Buffer<Ray>& rays) const;
   template <typename Real>
   std::vector<HitOf<Real>> trace_as(const std::vector<Ray>& rays, const std::string& options,
                                     const char* kernel = "trace", size_t rays_per_item = 1);
@@ -87,6 +93,7 @@ class Tracer {
   const Device& device_;
   Buffer<float> frames_;
   PlyTree tree_;
+  QuantisedTree quantised_;
   std::vector<uint32_t> leaves_;
   Buffer<uint32_t> counters_;
 };

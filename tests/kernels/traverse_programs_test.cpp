@@ -37,15 +37,18 @@ TEST_P(Variants, Compile) {
 INSTANTIATE_TEST_SUITE_P(Widths, Variants,
                          testing::Values("-DW_LANES=1", "-DW_LANES=8", "-DW_LANES=16", "-DW_LANES=8 -DW_PORTABLE",
                                          "-DW_LANES=16 -DW_PORTABLE", "-DW_LANES=1 -DW_LOCAL_STAGE=1",
-                                         "-DW_LANES=16 -DW_LOCAL_STAGE=2"));
+                                         "-DW_LANES=16 -DW_LOCAL_STAGE=2", "-DW_LANES=1 -DW_SIMT",
+                                         "-DW_LANES=1 -DW_SIMT -DW_PORTABLE"));
 INSTANTIATE_TEST_SUITE_P(Double, Variants,
-                         testing::Values("-DW_LANES=1 -DW_DOUBLE", "-DW_LANES=1 -DW_DOUBLE -DW_LOCAL_STAGE=1",
+                         testing::Values("-DW_LANES=1 -DW_DOUBLE", "-DW_LANES=1 -DW_DOUBLE -DW_SIMT",
+                                         "-DW_LANES=1 -DW_DOUBLE -DW_LOCAL_STAGE=1",
                                          "-DW_LANES=1 -DW_DOUBLE -DW_LOCAL_STAGE=2 -DW_PORTABLE -DW_HAS_FIBRES"));
 
 TEST(Programs, WarpAndPackCompile) {
   const Device device = Device::open();
   EXPECT_NO_THROW(build_program(device, "warp.cl"));
   EXPECT_NO_THROW(build_program(device, "pack.cl"));
+  EXPECT_NO_THROW(build_program(device, "quantise.cl"));
 }
 
 }  // namespace
