@@ -1,17 +1,18 @@
-// Stored against procedural leaves of one lattice. Usage: procedural_bench [segments] [rays per side] [cells] [stored].
-// Prints how far the lattice's warp is from the mesh's, bytes a segment, seconds of the build, million rays per
-// CPU-second and the ratio of the two, each the median of five interleaved launches, and how many hits differ. With 0
-// as `stored` the procedural form is measured alone.
+// Stored against procedural leaves of one lattice. Usage: procedural_bench [segments] [rays per side] [cells] [stored]
+// [rows.csv]. Prints how far the lattice's warp is from the mesh's, bytes a segment, seconds of the build, million rays
+// per CPU-second and the ratio of the two, each the median of five interleaved launches, and how many hits differ;
+// appends the figures to the rows' file. With 0 as `stored` the procedural form is measured alone.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
 
+#include "bench/growth_rows.h"
+#include "bench/wale_bench/clock.h"
 #include "geom/base_mesh_generators.h"
 #include "geom/lattice_fabric.h"
 #include "geom/warp.h"
@@ -21,6 +22,7 @@ namespace {
 
 using namespace wale;
 using namespace wale::test;
+using bench::median;
 
 // A square of cloth with folds as long as a third of it.
 BaseMesh sheet(double side) {
@@ -30,37 +32,35 @@ BaseMesh sheet(double side) {
   return mesh;
 }
 
-struct Held {
-  double knit_seconds = 0, upload_seconds = 0;
-  std::unique_ptr<FabricTracer> tracer;
-};
+constexpr const char* form_of(Storage storage) {
+  return storage == Storage::stored ? "stored of lattice" : "procedural";
+}
 
-Held hold(const BaseMesh& mesh, const Pattern& pattern, FabricSpec spec, Storage storage) {
-  using Clock = std::chrono::steady_clock;
-  const auto seconds = [](auto a, auto b) { return std::chrono::duration<double>(b - a).count(); };
+std::unique_ptr<FabricTracer> hold(const BaseMesh& mesh, const Pattern& pattern, FabricSpec spec, Storage storage,
+                                   bench::GrowthRows& rows) {
   spec.storage = storage;
-  Held held;
-  const auto start = Clock::now();
+  const bench::Stopwatch knit;
   const Fabric fabric = knit_lattice(mesh, pattern, spec);
-  const auto knitted = Clock::now();
-  held.tracer = std::make_unique<FabricTracer>(test_device(), fabric);
-  held.knit_seconds = seconds(start, knitted);
-  held.upload_seconds = seconds(knitted, Clock::now());
-  const FabricDevice& f = held.tracer->fabric();
-  const double n = double(f.segment_count);
+  const bench::Seconds knitted = knit.seconds();
+  const bench::Stopwatch upload;
+  auto tracer = std::make_unique<FabricTracer>(test_device(), fabric);
+  const bench::Seconds uploaded = upload.seconds();
+  const FabricDevice& f = tracer->fabric();
+  const double n = double(f.segment_count), lattice = double(f.lattice.bytes()) / n;
+  const double nodes = double(f.tree.nodes.bytes()) / n, leaves = double(f.tree.leaves.bytes()) / n;
+  const double trace = nodes + leaves + lattice * (storage == Storage::procedural);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   fmt::print(
-      "{:10} {} segments, {} leaves, {:.2f} B a segment to trace ({:.2f} nodes, {:.2f} lattice and tile tables, {:.2f} "
-      "leaves), {:.2f} in frames; lattice {:.2f} s, upload {:.2f} s (warp {:.2f}, pack {:.2f}, tree {:.2f}); peak "
-      "{:.0f} "
-      "MB\n",
-      storage == Storage::stored ? "stored" : "procedural", f.segment_count, f.patch_count,
-      double(f.tree.nodes.bytes() + f.lattice.bytes() * (storage == Storage::procedural) + f.tree.leaves.bytes()) / n,
-      double(f.tree.nodes.bytes()) / n, double(f.lattice.bytes()) / n, double(f.tree.leaves.bytes()) / n,
-      double(f.frames.bytes()) / n, held.knit_seconds, held.upload_seconds, f.warp_seconds, f.pack_seconds,
-      f.build_seconds, double(usage.ru_maxrss) / 1024);
-  return held;
+      "{:17} {} segments, {} leaves, {:.2f} B a segment to trace ({:.2f} nodes, {:.2f} lattice and tile tables, {:.2f} "
+      "leaves), {:.2f} in frames; lattice {:.2f} s, upload {:.2f} s (warp {:.2f}, pack {:.2f}, tree {:.2f}), CPU "
+      "{:.3f} and {:.3f} s; peak {:.0f} MB\n",
+      form_of(storage), f.segment_count, f.patch_count, trace, nodes, lattice, leaves, double(f.frames.bytes()) / n,
+      knitted.wall, uploaded.wall, f.warp_seconds, f.pack_seconds, f.build_seconds, knitted.cpu, uploaded.cpu,
+      double(usage.ru_maxrss) / 1024);
+  rows.add(f.segment_count, form_of(storage), "memory to trace", "bytes a segment", trace);
+  rows.add(f.segment_count, form_of(storage), "build", "CPU seconds", uploaded.cpu);
+  return tracer;
 }
 
 // Distance of the lattice's warp from that of the mesh, in ply radii: median and largest over the plies' vertices.
@@ -117,26 +117,28 @@ std::vector<Ray> grid_of_rays(const Box& b, uint32_t side) {
   return rays;
 }
 
-double median(std::vector<double> x) {
-  std::sort(x.begin(), x.end());
-  return x[x.size() / 2];
-}
-
-void compare(const char* kind, const char* kernel, const Held& stored, const Held& procedural,
-             const std::vector<Ray>& rays, const std::vector<Ray>& same) {
+void compare(const char* kind, const char* kernel, const FabricTracer* stored, const FabricTracer& procedural,
+             const std::vector<Ray>& rays, const std::vector<Ray>& same, bench::GrowthRows& rows) {
   std::vector<double> a, b, ratio;
   for (int k = 0; k < 6; ++k) {
-    if (stored.tracer) a.push_back(stored.tracer->cpu_seconds(rays, kernel));
-    b.push_back(procedural.tracer->cpu_seconds(same, kernel));
-    if (stored.tracer) ratio.push_back(a.back() / b.back());
+    if (stored) a.push_back(stored->cpu_seconds(rays, kernel));
+    b.push_back(procedural.cpu_seconds(same, kernel));
+    if (stored) ratio.push_back(a.back() / b.back());
     if (k == 0) a.clear(), b.clear(), ratio.clear();  // warm
   }
   const double million = double(same.size()) * 1e-6;
-  if (!stored.tracer)
-    fmt::print("{:8} procedural {:.2f} Mrays per CPU-second\n", kind, million / median(b));
+  const auto speed = [&](const FabricTracer& tracer, Storage storage, double value) {
+    rows.add(tracer.fabric().segment_count, form_of(storage), fmt::format("speed, {}", kind),
+             "million rays a CPU second", value);
+    return value;
+  };
+  const double alone = speed(procedural, Storage::procedural, million / median(b));
+  if (!stored)
+    fmt::print("{:8} procedural {:.2f} Mrays per CPU-second\n", kind, alone);
   else
-    fmt::print("{:8} stored {:.2f}, procedural {:.2f} Mrays per CPU-second, ratio {:.3f}\n", kind, million / median(a),
-               million / median(b), median(ratio));
+    fmt::print("{:8} stored {:.2f}, procedural {:.2f} Mrays per CPU-second, ratio {:.3f} ({:.3f} to {:.3f})\n", kind,
+               speed(*stored, Storage::stored, million / median(a)), alone, median(ratio),
+               *std::min_element(ratio.begin(), ratio.end()), *std::max_element(ratio.begin(), ratio.end()));
 }
 
 }  // namespace
@@ -148,24 +150,31 @@ int main(int argc, char** argv) {
   spec.scale.kind = FabricScale::Kind::uv_metres;
   spec.lattice = argc > 3 ? std::atoi(argv[3]) : 1;
   const bool both = argc <= 4 || std::atoi(argv[4]) != 0;
+  bench::GrowthRows rows(argc > 5 ? argv[5] : nullptr);
   const Pattern pattern = stockinette_pattern();
   const BaseMesh probe = sheet(0.1);
   const double per_area = double(estimate_segments(probe, pattern, spec)) / 0.01;
   const BaseMesh mesh = sheet(std::sqrt(wanted / per_area));
   fmt::print("{}\n", test_device().traits().name);
   print_accuracy(mesh, pattern, spec);
-  const Held procedural = hold(mesh, pattern, spec, Storage::procedural);
-  Held stored;
-  if (both) stored = hold(mesh, pattern, spec, Storage::stored);
+  for (const Storage storage : {Storage::procedural, Storage::stored}) {  // compiles the kernels
+    FabricSpec small = spec;
+    small.storage = storage;
+    const Fabric fabric = knit_lattice(probe, pattern, small);
+    const FabricTracer tracer(test_device(), fabric);
+  }
+  const auto procedural = hold(mesh, pattern, spec, Storage::procedural, rows);
+  std::unique_ptr<FabricTracer> stored;
+  if (both) stored = hold(mesh, pattern, spec, Storage::stored, rows);
 
-  const std::vector<Ray> rays = grid_of_rays(procedural.tracer->bounds(), side);
-  const std::vector<Hit> hits = procedural.tracer->trace(rays);
-  const std::vector<Ray> bounce = bounce_rays(rays, hits, procedural.tracer->surfaces(rays, hits), 1);
+  const std::vector<Ray> rays = grid_of_rays(procedural->bounds(), side);
+  const std::vector<Hit> hits = procedural->trace(rays);
+  const std::vector<Ray> bounce = bounce_rays(rays, hits, procedural->surfaces(rays, hits), 1);
   std::vector<Ray> stored_bounce;
   if (both) {
-    const std::vector<Hit> others = stored.tracer->trace(rays);
-    stored_bounce = bounce_rays(rays, others, stored.tracer->surfaces(rays, others), 1);
-    const std::vector<Hit> a = stored.tracer->trace(stored_bounce), b = procedural.tracer->trace(bounce);
+    const std::vector<Hit> others = stored->trace(rays);
+    stored_bounce = bounce_rays(rays, others, stored->surfaces(rays, others), 1);
+    const std::vector<Hit> a = stored->trace(stored_bounce), b = procedural->trace(bounce);
     size_t differ = 0;
     const auto count = [&](const std::vector<Hit>& x, const std::vector<Hit>& y) {
       for (size_t i = 0; i < x.size(); ++i)
@@ -176,7 +185,7 @@ int main(int argc, char** argv) {
     count(a, b);
     fmt::print("hits that differ: {} of {}\n", differ, hits.size() + a.size());
   }
-  compare("primary", "nearest", stored, procedural, rays, rays);
-  compare("shadow", "any_hit", stored, procedural, stored_bounce, bounce);
-  compare("bounce", "nearest", stored, procedural, stored_bounce, bounce);
+  compare("primary", "nearest", stored.get(), *procedural, rays, rays, rows);
+  compare("shadow", "any_hit", stored.get(), *procedural, stored_bounce, bounce, rows);
+  compare("bounce", "nearest", stored.get(), *procedural, stored_bounce, bounce, rows);
 }

@@ -1,6 +1,7 @@
 // The same segments and rays through Intel Embree's round linear curves and through Wale's kernels, in one process,
-// interleaved: embree_peer [segments] [rays per side] [repetitions]. Prints medians of paired ratios of CPU time over
-// all threads (wall times of two programs on a shared machine say little), hit agreement, bytes and build times.
+// interleaved: embree_peer [segments] [rays per side] [repetitions] [rows.csv]. Prints medians of paired ratios of CPU
+// time over all threads, and of wall time (which says little on a shared machine), hit agreement and bytes; appends the
+// figures to the rows' file.
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 #include <pmmintrin.h>
@@ -8,24 +9,22 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
-#include <ctime>
 #include <thread>
 
 #include "bench/cloth_rays.h"
+#include "bench/growth_rows.h"
 #include "bench/peers/embree_device.h"
+#include "bench/wale_bench/clock.h"
+#include "host/materials.h"
 
 namespace {
 
 using namespace wale;
 using namespace wale::test;
 
-double cpu_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
-
-double median(std::vector<double> v) {
-  std::sort(v.begin(), v.end());
-  return v[v.size() / 2];
-}
+using bench::median;
+using bench::Seconds;
+using bench::Stopwatch;
 
 std::atomic<int64_t> embree_bytes{0};
 
@@ -61,9 +60,7 @@ class Peer {
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene_, geometry);
     rtcReleaseGeometry(geometry);
-    const double start = cpu_seconds();
     rtcCommitScene(scene_);
-    build_seconds = cpu_seconds() - start;
     bytes = embree_bytes;
     radius_ = radius;
   }
@@ -74,8 +71,8 @@ class Peer {
   Peer(const Peer&) = delete;
   Peer& operator=(const Peer&) = delete;
 
-  /// CPU seconds; `hits` receives distances, or 1e30.
-  double time(const std::vector<Ray>& rays, bool any, bool packets, std::vector<float>& hits) const {
+  /// `hits` receives distances, or 1e30.
+  Seconds time(const std::vector<Ray>& rays, bool any, bool packets, std::vector<float>& hits) const {
     hits.resize(rays.size());
     std::atomic<size_t> next{0};
     const auto work = [&] {
@@ -90,14 +87,13 @@ class Peer {
           for (size_t i = begin; i < end; ++i) hits[i] = trace1(rays[i], any);
       }
     };
-    const double start = cpu_seconds();
+    const Stopwatch watch;
     std::thread other(work);
     work();
     other.join();
-    return cpu_seconds() - start;
+    return watch.seconds();
   }
 
-  double build_seconds = 0;
   int64_t bytes = 0;
 
  private:
@@ -165,59 +161,95 @@ class Peer {
   float radius_ = 0;
 };
 
+struct Kind {
+  const char* name;
+  const std::vector<Ray>* rays;
+  const char* kernel;
+  bool any, attenuated;
+};
+
+struct Result {
+  std::vector<double> ours, theirs, ratio, wall_ratio;
+  std::vector<float> embree_hits;
+};
+
+/// Embree's time is the shorter of its one ray at a time and its sixteen, in each repetition.
+Result compare(Tracer& tracer, const Peer& peer, const Kind& kind, const std::string& options, int repetitions) {
+  Result out;
+  std::vector<float> hits16;
+  for (int k = -1; k < repetitions; ++k) {  // the first one is not counted
+    const Seconds one = peer.time(*kind.rays, kind.any, false, out.embree_hits);
+    Seconds ours;
+    ours.cpu = tracer.time(*kind.rays, options, kind.kernel, &ours.wall);
+    const Seconds sixteen = peer.time(*kind.rays, kind.any, true, hits16);
+    if (k < 0) continue;
+    out.ours.push_back(ours.cpu);
+    out.theirs.push_back(std::min(one.cpu, sixteen.cpu));
+    out.ratio.push_back(out.theirs.back() / ours.cpu);
+    out.wall_ratio.push_back(std::min(one.wall, sixteen.wall) / ours.wall);
+  }
+  return out;
+}
+
+void print_hits(const Kind& kind, const std::vector<Hit>& found, const std::vector<float>& embree) {
+  size_t agree = 0, ours = 0, theirs = 0;
+  for (size_t i = 0; i < found.size(); ++i) {
+    const bool a = kind.any ? found[i].occluded != 0 : found[i].kind != W_HIT_NONE, b = embree[i] < 1e29f;
+    ours += a;
+    theirs += b;
+    agree += a == b;
+  }
+  const double share = 100.0 / double(found.size());
+  if (kind.attenuated)  // Embree's plies are opaque
+    fmt::print("| {}, stopped | {:.3f} % | {:.3f} % | |\n", kind.name, share * double(ours), share * double(theirs));
+  else
+    fmt::print("| {}, hit or miss agrees | {:.3f} % | | |\n", kind.name, share * double(agree));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const double wanted = argc > 1 ? std::atof(argv[1]) : 1e6;
   const uint32_t side = argc > 2 ? uint32_t(std::atoi(argv[2])) : 512;
   const int repetitions = argc > 3 ? std::atoi(argv[3]) : 5;
-  const Strands cloth = bench::cloth(wanted);
+  bench::GrowthRows rows(argc > 4 ? argv[4] : nullptr);
+  Strands cloth = bench::cloth(wanted);
   const Device& device = test_device();
   const std::string options = fmt::format("-DW_LANES={}", device.traits().lanes);
   Tracer tracer(device, cloth);
+  PlyAppearance cotton;
+  cotton.preset = "cotton";
+  for (PlyPatch& patch : cloth.patches) patch.tau = ply_material(cotton).tau_e;
+  Tracer attenuated(device, cloth);
   const Peer peer(cloth);
-  const double segments = double(cloth.segments());
+  const size_t segments = cloth.segments();
   fmt::print("{} {}, Embree {}\n", device.traits().name, device.traits().driver, RTC_VERSION_STRING);
-  fmt::print("segments {}\n\n| | Wale | Embree round | ratio |\n| --- | --- | --- | --- |\n", cloth.segments());
-  const double bytes = double(tracer.tree().leaves.bytes() + tracer.tree().tree_bytes());
-  fmt::print("| bytes a segment | {:.1f} | {:.1f} | {:.2f} |\n", bytes / segments, double(peer.bytes) / segments,
-             bytes / double(peer.bytes));
+  fmt::print("segments {}\n\n| | Wale | Embree round | ratio | wall |\n| --- | --- | --- | --- | --- |\n", segments);
+  const double bytes = double(tracer.tree().leaves.bytes() + tracer.tree().tree_bytes()) / double(segments);
+  const double peer_bytes = double(peer.bytes) / double(segments);
+  fmt::print("| bytes a segment | {:.1f} | {:.1f} | {:.2f} | |\n", bytes, peer_bytes, bytes / peer_bytes);
+  rows.add(segments, "stored", "memory to trace", "bytes a segment", bytes);
+  rows.add(segments, "embree", "memory to trace", "bytes a segment", peer_bytes);
 
   const bench::ClothRays rays = bench::cloth_rays(tracer, side, options);
-  struct Kind {
-    const char* name;
-    const std::vector<Ray>* rays;
-    const char* kernel;
-    bool any;
-  };
-  std::vector<Kind> kinds = {{"primary, one by one", &rays.primary, "closest", false},
-                             {"shadow", &rays.shadow, "occluded", true},
-                             {"bounce", &rays.bounce, "closest", false}};
+  // Embree has no rays that pass through: it sends the same rays against the same plies, opaque.
+  std::vector<Kind> kinds = {{"primary, one by one", &rays.primary, "closest", false, false},
+                             {"shadow", &rays.shadow, "occluded", true, false},
+                             {"shadow, attenuated", &rays.shadow, "occluded", true, true},
+                             {"bounce", &rays.bounce, "closest", false, false}};
   // As the renderer sends them, where the device's vectors are wide enough.
   if (device.traits().lanes == W_NODE_WIDTH)
-    kinds.insert(kinds.begin(), {"primary", &rays.primary, "closest_packets", false});
+    kinds.insert(kinds.begin(), {"primary", &rays.primary, "closest_packets", false, false});
   for (const Kind& kind : kinds) {
-    std::vector<double> ours, theirs, ratios;
-    std::vector<float> hits, hits16;
-    tracer.time(*kind.rays, options, kind.kernel);
-    peer.time(*kind.rays, kind.any, false, hits);
-    for (int k = 0; k < repetitions; ++k) {
-      const double one = peer.time(*kind.rays, kind.any, false, hits);
-      const double a = tracer.time(*kind.rays, options, kind.kernel);
-      const double sixteen = peer.time(*kind.rays, kind.any, true, hits16);
-      const double best = std::min(one, sixteen);
-      ours.push_back(a);
-      theirs.push_back(best);
-      ratios.push_back(best / a);
-    }
-    const std::vector<Hit> found = tracer.trace(*kind.rays, options);
-    size_t agree = 0;
-    for (size_t i = 0; i < found.size(); ++i)
-      agree += (kind.any ? found[i].occluded != 0 : found[i].kind != W_HIT_NONE) == (hits[i] < 1e29f);
-    const double n = double(kind.rays->size());
-    fmt::print("| {}, Mrays per CPU-second | {:.2f} | {:.2f} | {:.2f} ({:.2f} to {:.2f}) |\n", kind.name,
-               n / median(ours) * 1e-6, n / median(theirs) * 1e-6, median(ratios),
-               *std::min_element(ratios.begin(), ratios.end()), *std::max_element(ratios.begin(), ratios.end()));
-    fmt::print("| {}, hit or miss agrees | {:.3f} % | | |\n", kind.name, 100.0 * double(agree) / n);
+    Tracer& against = kind.attenuated ? attenuated : tracer;
+    const Result r = compare(against, peer, kind, options, repetitions);
+    const double mega = double(kind.rays->size()) * 1e-6, ours = mega / median(r.ours),
+                 theirs = mega / median(r.theirs);
+    const auto [least, most] = std::minmax_element(r.ratio.begin(), r.ratio.end());
+    fmt::print("| {}, Mrays per CPU-second | {:.2f} | {:.2f} | {:.2f} ({:.2f} to {:.2f}) | {:.2f} |\n", kind.name, ours,
+               theirs, median(r.ratio), *least, *most, median(r.wall_ratio));
+    for (const auto& [form, speed] : {std::pair("stored", ours), std::pair("embree", theirs)})
+      rows.add(segments, form, "speed, " + std::string(kind.name), "million rays a CPU second", speed);
+    print_hits(kind, against.trace(*kind.rays, options), r.embree_hits);
   }
 }

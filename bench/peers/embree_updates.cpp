@@ -1,17 +1,17 @@
 // Building and updating: a knitted fabric's curves through Wale's warp, leaves and tree, and through Intel Embree's
-// round linear curves, in one process, interleaved: embree_updates [segments] [repetitions]. Prints medians of wall and
-// CPU time on two threads each, and of the ratios of every repetition. A frame moves the base mesh; Embree is handed
-// the new points ready made, Wale makes them.
+// round linear curves, in one process, interleaved: embree_updates [segments] [repetitions] [rows.csv]. Prints medians
+// of wall and CPU time on two threads each, and of the ratios of every repetition; appends the figures to the rows'
+// file. A frame moves the base mesh; Embree is handed the new points ready made, Wale makes them.
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 
+#include "bench/growth_rows.h"
 #include "bench/peers/embree_device.h"
+#include "bench/wale_bench/clock.h"
 #include "geom/base_mesh_generators.h"
 #include "tests/kernels/fabric_tracer.h"
 
@@ -20,22 +20,14 @@ namespace {
 using namespace wale;
 using namespace wale::test;
 
-struct Seconds {
-  double wall = 0, cpu = 0;
-};
+using bench::median;
+using bench::Seconds;
 
 template <typename Work>
 Seconds time_of(const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
-  const std::clock_t cpu = std::clock();
+  const bench::Stopwatch watch;
   work();
-  return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
-          double(std::clock() - cpu) / CLOCKS_PER_SEC};
-}
-
-double median(std::vector<double> v) {
-  std::sort(v.begin(), v.end());
-  return v[v.size() / 2];
+  return watch.seconds();
 }
 
 /// A sheet of stockinette of about `segments` ply segments: 4 mm wales on a mesh of one vertex a wale or so.
@@ -169,6 +161,7 @@ struct Row {
 int main(int argc, char** argv) {
   const double wanted = argc > 1 ? std::atof(argv[1]) : 1e6;
   const int repetitions = argc > 2 ? std::atoi(argv[2]) : 5;
+  bench::GrowthRows rows(argc > 3 ? argv[3] : nullptr);
   const Device& device = test_device();
   Fabric fabric;
   const Seconds knit = time_of([&] { fabric = sheet(wanted); });
@@ -239,4 +232,15 @@ int main(int argc, char** argv) {
   for (int i = 0; i < kPeers; ++i)
     fmt::print("{} {:.1f} ({})", i ? "," : "", double(peer_bytes[i]) / segments, peers[i].name);
   fmt::print("\n");
+
+  const auto add = [&](const char* form, const char* quantity, double cpu) {
+    rows.add(fabric.report.segments, form, quantity, "CPU seconds", cpu);
+  };
+  // As a user of Embree would choose: the faster of its two scenes.
+  const auto faster = [](const Row(&row)[kPeers]) { return std::min(median(row[0].cpu), median(row[1].cpu)); };
+  add("stored", "knit", knit.cpu);
+  add("stored", "build", median(tree_row.cpu));
+  add("embree", "build", faster(build_row));
+  add("stored", "update", median(update_row.cpu));
+  add("embree", "update", faster(commit_row));
 }

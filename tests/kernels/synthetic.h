@@ -66,8 +66,9 @@ class Tracer {
   /// The same source built with double arithmetic: the device must have fp64.
   std::vector<HitOf<double>> trace_in_double(const std::vector<Ray>& rays);
   /// CPU seconds, of all threads, of one launch of kernel `closest`, `closest_packets` or `occluded` over the rays,
-  /// without copies.
-  double time(const std::vector<Ray>& rays, const std::string& options, const std::string& kernel);
+  /// without copies. `wall`: receives seconds by the clock on the wall.
+  double time(const std::vector<Ray>& rays, const std::string& options, const std::string& kernel,
+              double* wall = nullptr);
   std::vector<Surface> surfaces(const std::vector<Ray>& rays, const std::vector<Hit>& hits);
   std::vector<SurfaceOf<double>> surfaces_in_double(const std::vector<Ray>& rays,
                                                     const std::vector<HitOf<double>>& hits);
