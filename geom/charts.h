@@ -35,12 +35,19 @@ class ChartLocator {
   bool locate(dvec2 uv, double reach, dvec2 metric, ChartPoint& out) const;
 
  private:
+  /// A triangle by its sides: corner and direction, such that a point lies inside where it is to no side's right.
+  struct Outline {
+    uint32_t triangle;
+    dvec2 corner[3], along[3];
+  };
+
   const BaseMesh& mesh_;
   const Chart& chart_;
   dvec2 origin_, cell_;
   ivec2 size_;
+  std::vector<Outline> outlines_;  ///< triangles that can be found, ascending
   std::vector<size_t> offset_;
-  std::vector<uint32_t> items_;
+  std::vector<uint32_t> items_;  ///< outlines that touch a bucket, ascending
 };
 
 }  // namespace wale

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <thread>
 
 #include "geom/error.h"
 #include "geom/fabric_map.h"
@@ -45,7 +46,8 @@ double leaves_per_sample(const FabricSpec& spec) {
 
 }  // namespace
 
-Fabric knit_fabric(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spec) {
+Fabric knit_fabric(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spec, unsigned threads) {
+  if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
   require_uv(mesh);
   const size_t expected = estimate_segments(mesh, pattern, spec);
   if (expected > kMaxSegments)
@@ -94,14 +96,16 @@ Fabric knit_fabric(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spec
                  static_cast<double>(cells));
     fabric.grids.push_back(grid);
     if (!chart_map.knitted) continue;
-    YarnCutter cutter(fabric, c, chart_map, spec, bundle.get(), map.flyaway_radius, uv);
-    knit_flat(pattern, partners, map.yarn, chart_map.scale, chart_map.rect, [&](FlatYarn&& yarn) { cutter.add(yarn); });
+    const FlatKnit knit(pattern, partners, map.yarn, chart_map.scale, chart_map.rect);
+    cut_yarns(fabric, {fabric, c, chart_map, spec, bundle.get(), map.flyaway_radius}, knit, threads, uv);
   }
   if (fabric.runs.empty()) user_error("fabric '{}': no yarn lies on the cloth; give a finer scale", spec.name);
 
   make_patches(fabric, uv);
-  fabric.cell_triangles = list_triangles(fabric, knitted);
-  fabric.cell_segments = list_segments(fabric, uv);
+  if (spec.cell_lists) {
+    fabric.cell_triangles = list_triangles(fabric, knitted);
+    fabric.cell_segments = list_segments(fabric, uv);
+  }
 
   Fabric::Report& report = fabric.report;
   report.runs = fabric.runs.size();

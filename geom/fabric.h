@@ -40,6 +40,7 @@ struct FabricSpec {
   FibreRecipe fibres;  ///< what its plies are made of
   FlyawaySpec flyaways;
   bool places = false;  ///< fill Fabric::place
+  bool cell_lists = true;  ///< fill Fabric::cell_triangles and cell_segments
   Storage storage = Storage::automatic;
   int lattice = 0;  ///< cells along a tile's side of a lattice that takes the mesh's place in the warp; 0 = none
 };
@@ -122,8 +123,8 @@ struct Fabric {
   std::vector<uint32_t> chart_of_triangle;
   std::vector<Patch> patches;  ///< sorted by cell
   std::vector<UvGrid> grids;   ///< per chart
-  Csr cell_triangles;          ///< triangles that cover the cell (UV overlap)
-  Csr cell_segments;           ///< segments that touch the cell: vertex ids of their starts
+  Csr cell_triangles;          ///< where FabricSpec::cell_lists: triangles that cover the cell (UV overlap)
+  Csr cell_segments;           ///< and segments that touch it: vertex ids of their starts
   std::vector<LatticeChart> lattice;  ///< of a regular cloth, in place of runs, anchors, patches and cells
   bool procedural = false;            ///< it is to stay a lattice
   double fibre_twist = 0;             ///< of a lattice: FibreRecipe::twist
@@ -148,7 +149,8 @@ size_t estimate_segments(const BaseMesh& mesh, const Pattern& pattern, const Fab
 
 /// Knits the pattern over the mesh: charts, scale, tiling and stitching, plies, cutting at borders (half a stitch past
 /// them), anchors, patches, UV grid with CSR lists. Throws a user error when the tile is larger than the cloth, the
-/// twist, radius or period is not usable, or nothing lies on the cloth.
-Fabric knit_fabric(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spec);
+/// twist, radius or period is not usable, or nothing lies on the cloth. The same on any number of threads (0: as many
+/// as the machine has cores).
+Fabric knit_fabric(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spec, unsigned threads = 0);
 
 }  // namespace wale

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "geom/stitch.h"
@@ -38,15 +39,34 @@ struct FlatYarn {
   std::vector<dvec3> centre;     ///< yarn axis, metres in the cloth: x course, y wale, z through the fabric
   std::vector<dvec3> position;   ///< ply axes
   std::vector<dvec3> normal;     ///< unit, perpendicular to the ply's mean tangent: double-reflection frame of the ply
+  std::vector<dvec3> tangent;    ///< unit: mean of a ply's two edges
   std::vector<double> length;    ///< metres of ply from the start of the full yarn (rest length)
   std::vector<YarnPlace> place;  ///< per sample where YarnSpec::places asks for it; a ghost's `along` goes on
 };
 
-/// Samples of one tile, the same in every instance: chosen by arc length so that the twisted ply polylines stay within
-/// spec.tolerance of their curves. `scale` takes pattern metres to cloth metres in x, y and z.
-/// Yarns are delivered one at a time, in the order of stitch(); the first link's instance tells where it lies.
-/// Deterministic; frames by double reflection (Wang et al. 2008), closing twist of closed yarns spread over their
-/// length.
+/// The full yarns of a rectangle of tiles. Samples of one tile are the same in every instance: chosen by arc length so
+/// that the twisted ply polylines stay within spec.tolerance of their curves. `scale` takes pattern metres to cloth
+/// metres in x, y and z. Deterministic; frames by double reflection (Wang et al. 2008), closing twist of closed yarns
+/// spread over their length.
+class FlatKnit {
+ public:
+  /// `pattern` and `partners` must outlive it.
+  FlatKnit(const Pattern& pattern, const PartnerMap& partners, const YarnSpec& spec, dvec3 scale,
+           const InstanceRect& rect);
+  ~FlatKnit();
+  /// Full yarns, in the order of stitch().
+  size_t yarns() const { return chains_.size(); }
+  /// Lays yarn `number` in place of what `yarn` held; several threads may do so at once.
+  void lay(size_t number, FlatYarn& yarn) const;
+
+ private:
+  class Layer;
+  const PartnerMap& partners_;
+  std::unique_ptr<const Layer> layer_;
+  std::vector<YarnChain> chains_;
+};
+
+/// Delivers the yarns of a FlatKnit one at a time, in order.
 void knit_flat(const Pattern& pattern, const PartnerMap& partners, const YarnSpec& spec, dvec3 scale,
                const InstanceRect& rect, const std::function<void(FlatYarn&&)>& deliver);
 

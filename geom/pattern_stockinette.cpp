@@ -26,12 +26,19 @@ double closest(int rows) {
   double centre_s = 0, centre_t = 0, half = kTwoPi;
   for (int round = 0; round < 12; ++round, half /= 8) {
     constexpr int kSteps = 64;
-    for (int i = -kSteps; i <= kSteps; ++i)
-      for (int j = -kSteps; j <= kSteps; ++j) {
-        const double s = centre_s + half * i / kSteps, t = centre_t + half * j / kSteps;
-        if (rows == 0 && std::abs(s - t) < kNeck) continue;
-        const double distance = glm::distance(loop(s), loop(t) + dvec3(0, rows * kRow, 0));
-        if (distance < best) best = distance, best_s = s, best_t = t;
+    double s[2 * kSteps + 1], t[2 * kSteps + 1];
+    dvec3 on_s[2 * kSteps + 1], on_t[2 * kSteps + 1];
+    for (int i = 0; i <= 2 * kSteps; ++i) {
+      s[i] = centre_s + half * (i - kSteps) / kSteps;
+      t[i] = centre_t + half * (i - kSteps) / kSteps;
+      on_s[i] = loop(s[i]);
+      on_t[i] = loop(t[i]) + dvec3(0, rows * kRow, 0);
+    }
+    for (int i = 0; i <= 2 * kSteps; ++i)
+      for (int j = 0; j <= 2 * kSteps; ++j) {
+        if (rows == 0 && std::abs(s[i] - t[j]) < kNeck) continue;
+        const double distance = glm::distance(on_s[i], on_t[j]);
+        if (distance < best) best = distance, best_s = s[i], best_t = t[j];
       }
     centre_s = best_s;
     centre_t = best_t;

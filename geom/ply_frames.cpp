@@ -13,8 +13,7 @@ dvec3 unit_or(const dvec3& v, const dvec3& otherwise) {
 }
 
 /// Mean of the two unit edges at every vertex of one polyline; the edge itself at its two ends.
-std::vector<dvec3> mean_tangents(const dvec3* p, size_t count) {
-  std::vector<dvec3> tangent(count);
+void mean_tangents(const dvec3* p, size_t count, dvec3* tangent) {
   dvec3 before = unit_or(p[1] - p[0], dvec3(1, 0, 0));
   tangent[0] = before;
   for (size_t k = 1; k + 1 < count; ++k) {
@@ -23,7 +22,6 @@ std::vector<dvec3> mean_tangents(const dvec3* p, size_t count) {
     before = after;
   }
   tangent[count - 1] = before;
-  return tangent;
 }
 
 dvec3 turned(const dvec3& n, const dvec3& axis, double angle) {
@@ -39,26 +37,34 @@ void measure(const dvec3* p, size_t first, size_t count, double* length) {
 }  // namespace
 
 void frame_plies(FlatYarn& yarn, int plies) {
-  const size_t count = yarn.centre.size();
-  yarn.normal.resize(count * plies);
-  yarn.length.resize(count * plies);
+  const size_t count = yarn.centre.size(), all = count * plies;
+  yarn.normal.resize(all);
+  yarn.length.resize(all);
+  yarn.tangent.resize(all);
   const size_t first = yarn.closed ? 1 : 0, last = yarn.closed ? count - 2 : count - 1;
-  for (int ply = 0; ply < plies; ++ply) {
-    const dvec3* p = &yarn.position[ply * count];
-    dvec3* n = &yarn.normal[ply * count];
-    double* length = &yarn.length[ply * count];
-    measure(p, first, count, length);
-    const std::vector<dvec3> tangent = mean_tangents(p, count);
+  for (size_t begin = 0; begin < all; begin += count) {
+    const dvec3 *p = &yarn.position[begin], *t = &yarn.tangent[begin];
+    measure(p, first, count, &yarn.length[begin]);
+    mean_tangents(p, count, &yarn.tangent[begin]);
     const dvec3 out = p[first] - yarn.centre[first];
-    const dvec3 across = out - glm::dot(out, tangent[first]) * tangent[first];
-    n[first] = glm::length(across) > 1e-6 * glm::distance(p[first], p[first + 1]) ? glm::normalize(across)
-                                                                                  : any_normal(tangent[first]);
-    for (size_t k = first + 1; k <= last; ++k)
-      n[k] = double_reflection(n[k - 1], p[k - 1], tangent[k - 1], p[k], tangent[k]);
-    if (!yarn.closed) continue;
-    const dvec3 side = glm::cross(tangent[first], n[first]);
+    const dvec3 across = out - glm::dot(out, t[first]) * t[first];
+    yarn.normal[begin + first] = glm::length(across) > 1e-6 * glm::distance(p[first], p[first + 1])
+                                     ? glm::normalize(across)
+                                     : any_normal(t[first]);
+  }
+  // Each frame waits for the one before it: the plies side by side fill the time.
+  for (size_t k = first + 1; k <= last; ++k)
+    for (size_t at = k; at < all; at += count)
+      yarn.normal[at] = double_reflection(yarn.normal[at - 1], yarn.position[at - 1], yarn.tangent[at - 1],
+                                          yarn.position[at], yarn.tangent[at]);
+  if (!yarn.closed) return;
+  for (size_t begin = 0; begin < all; begin += count) {
+    dvec3* n = &yarn.normal[begin];
+    const dvec3* t = &yarn.tangent[begin];
+    const double* length = &yarn.length[begin];
+    const dvec3 side = glm::cross(t[first], n[first]);
     const double closing = std::atan2(glm::dot(n[last], side), glm::dot(n[last], n[first]));
-    for (size_t k = first + 1; k < last; ++k) n[k] = turned(n[k], tangent[k], -closing * length[k] / length[last]);
+    for (size_t k = first + 1; k < last; ++k) n[k] = turned(n[k], t[k], -closing * length[k] / length[last]);
     n[last] = n[first];
     n[0] = n[last - 1];
     n[count - 1] = n[first + 1];

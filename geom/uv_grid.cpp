@@ -57,13 +57,13 @@ bool separated(const std::array<dvec2, 3>& t, dvec2 lo, dvec2 hi) {
   return false;
 }
 
+}  // namespace
+
 size_t cell_count(const Fabric& fabric) {
   if (fabric.grids.empty()) return 0;
   const UvGrid& last = fabric.grids.back();
   return last.first_cell + static_cast<size_t>(last.size.x) * static_cast<size_t>(last.size.y);
 }
-
-}  // namespace
 
 UvGrid make_grid(const Chart& chart, const ChartMap& map, double yarn_radius, double patches_per_tile,
                  double patches_per_cell) {

@@ -14,6 +14,9 @@ UvGrid make_grid(const Chart& chart, const ChartMap& map, double yarn_radius, do
 /// Global number of the cell that holds uv: wrapped along joins, else clamped into the grid.
 uint32_t cell_of(const UvGrid& grid, dvec2 uv);
 
+/// Cells of all charts.
+size_t cell_count(const Fabric& fabric);
+
 /// Calls visit(cell) for every cell that the UV box lo..hi touches; a cell may come twice where the grid wraps.
 void for_each_cell(const UvGrid& grid, dvec2 lo, dvec2 hi,
                    const std::function<void(uint32_t cell, dvec2 cell_lo)>& visit);

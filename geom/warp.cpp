@@ -19,10 +19,11 @@ dvec3 raw_normal(const BaseMesh& mesh, const ChartPoint& at, bool& varies) {
 
 dvec3 warp_point(const BaseMesh& mesh, const ChartPoint& at, double height) {
   const auto& t = mesh.triangle[at.triangle];
+  const dvec3 base =
+      (1 - at.b1 - at.b2) * mesh.position[t[0]] + at.b1 * mesh.position[t[1]] + at.b2 * mesh.position[t[2]];
+  if (height == 0) return base;
   bool varies = false;
-  const dvec3 normal = glm::normalize(raw_normal(mesh, at, varies));
-  return (1 - at.b1 - at.b2) * mesh.position[t[0]] + at.b1 * mesh.position[t[1]] + at.b2 * mesh.position[t[2]] +
-         height * normal;
+  return base + height * glm::normalize(raw_normal(mesh, at, varies));
 }
 
 // W = P + h n/|n| with P and n linear in uv, so dW/du = dP/du + h (dn/du - N (N . dn/du)) / |n|.

@@ -44,7 +44,7 @@ class Builder {
   }
 
   WideTree build() {
-    tree_.parent.push_back(W_NONE);
+    parent_.push_back(W_NONE);
     tree_.level_offset = {0};
     lay_out();
     tree_.words.resize(nodes_.size() * W_NODE_WORDS);
@@ -111,7 +111,7 @@ class Builder {
         for_children(part, [&](uint32_t slot, const Part& child, bool entry) {
           if (entry && !part.of_groups) return;
           nodes_.push_back(entry ? run_[groups_.entry(child.range.first).number] : child);
-          tree_.parent.push_back(node * W_NODE_WIDTH + slot);
+          parent_.push_back(node * W_NODE_WIDTH + slot);
         });
       }
       if (nodes_.size() > UINT32_MAX / W_NODE_WIDTH)
@@ -124,7 +124,8 @@ class Builder {
     uint32_t* words = tree_.words.data() + size_t(node) * W_NODE_WORDS;
     std::fill(words, words + 48, std::bit_cast<uint32_t>(1e30f));
     std::fill(words + 48, words + 96, std::bit_cast<uint32_t>(-1e30f));
-    std::fill(words + 96, words + W_NODE_WORDS, W_NONE);
+    std::fill(words + W_NODE_CHILD, words + W_NODE_WORDS, W_NONE);
+    words[W_NODE_PLACE] = parent_[node];
   }
 
   void set_child(uint32_t place, const Box& box, uint32_t code) {
@@ -133,7 +134,7 @@ class Builder {
       words[16 * k] = std::bit_cast<uint32_t>(box.lo[k]);
       words[48 + 16 * k] = std::bit_cast<uint32_t>(box.hi[k]);
     }
-    words[96] = code;
+    words[W_NODE_CHILD] = code;
   }
 
   // From the last node to the first: children before their parents.
@@ -147,7 +148,7 @@ class Builder {
           set_child(node * W_NODE_WIDTH + slot, widened(item.box), leaf_code_[item.number] | W_CHILD_LEAF);
         });
       if (node == 0) return;
-      const uint32_t place = tree_.parent[node];
+      const uint32_t place = parent_[node];
       const bool cell = nodes_[place / W_NODE_WIDTH].of_groups && !part.of_groups;
       Box box = cell ? widened(group_bounds(part.cell)) : Box{};
       const uint32_t* words = tree_.words.data() + size_t(node) * W_NODE_WORDS;
@@ -166,6 +167,7 @@ class Builder {
   BinaryTree items_, groups_;
   std::vector<Part> run_;    // per run of one group
   std::vector<Part> nodes_;  // per wide node
+  std::vector<uint32_t> parent_;
   WideTree tree_;
   mutable std::vector<std::pair<BinaryRange, uint32_t>> open_;
 };

@@ -12,7 +12,6 @@ namespace wale {
 struct WideTree {
   std::vector<uint32_t> words;         ///< W_NODE_WORDS per node; floats by bit pattern
   std::vector<uint32_t> node_cell;     ///< per node: the cell whose root it is, or 0xffffffff
-  std::vector<uint32_t> parent;        ///< per node: 16 * parent + slot in it; of the root 0xffffffff
   std::vector<uint32_t> level_offset;  ///< first node of each level, then the number of nodes
   size_t nodes() const;
 };

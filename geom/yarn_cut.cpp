@@ -16,16 +16,15 @@ constexpr double kJump = 3;
 
 }  // namespace
 
-YarnCutter::YarnCutter(Fabric& fabric, uint32_t chart, const ChartMap& map, const FabricSpec& spec,
-                       const FibreBundle* bundle, double flyaway_radius, std::vector<dvec2>& uv)
-    : fabric_(fabric),
-      chart_(chart),
-      map_(map),
-      spec_(spec),
-      bundle_(bundle),
-      flyaway_radius_(flyaway_radius),
-      uv_(uv),
-      locator_(fabric.mesh, fabric.charts[chart]) {
+YarnCutter::YarnCutter(const YarnCutting& cutting, const ChartLocator& locator, size_t first_yarn)
+    : fabric_(cutting.fabric),
+      chart_(cutting.chart),
+      map_(cutting.map),
+      spec_(cutting.spec),
+      bundle_(cutting.bundle),
+      flyaway_radius_(cutting.flyaway_radius),
+      locator_(locator),
+      first_yarn_(first_yarn) {
   if (bundle_) bundle_->groups(kFibreGroup, fibre_order_, fibre_groups_);
 }
 
@@ -73,18 +72,18 @@ void YarnCutter::add(const FlatYarn& yarn) {
       Sample previous = own(before);
       if (i == 0) previous.uv -= lap_;
       here.cut_before = here.kept && previous.kept && jumps(previous, here);
-      fabric_.report.jumps_cut += here.cut_before;
+      out_.jumps_cut += here.cut_before;
     }
     if (!here.kept || here.cut_before) {
       whole = false;
       start = i;
     }
-    fabric_.report.samples_outside += !here.kept;
-    fabric_.report.samples_extrapolated += here.kept && here.at.outside > 0;
+    out_.samples_outside += !here.kept;
+    out_.samples_extrapolated += here.kept && here.at.outside > 0;
   }
   if (whole) {
     add_runs(yarn, {0, total, true});
-    ++fabric_.report.full_yarns;
+    ++out_.yarns;
     return;
   }
   if (!yarn.closed) start = 0;
@@ -98,14 +97,14 @@ void YarnCutter::add(const FlatYarn& yarn) {
     if (end - i >= 2)
       add_runs(yarn, {first + start + i, end - i, false});
     else
-      ++fabric_.report.samples_outside;  // a single sample makes no segment
+      ++out_.samples_outside;  // a single sample makes no segment
     i = end;
   }
-  ++fabric_.report.full_yarns;
+  ++out_.yarns;
 }
 
 void YarnCutter::add_runs(const FlatYarn& yarn, const Stretch& stretch) {
-  first_place_ = static_cast<uint32_t>(fabric_.place.size());
+  first_place_ = static_cast<uint32_t>(out_.place.size());
   if (!yarn.place.empty()) add_places(yarn, stretch);
   if (spec_.detail == Detail::fibres)
     add_fibre_runs(yarn, stretch);
@@ -124,22 +123,21 @@ YarnCutter::Place YarnCutter::place_in(const FlatYarn& yarn, size_t sample) {
 StoredLength YarnCutter::length_of(const FlatYarn& yarn, size_t ply, double& lap) const {
   const double* length = yarn.length.data() + ply * yarn.centre.size();
   lap = yarn.closed ? length[yarn.centre.size() - 2] - length[1] : 0;
-  return stored_length(static_cast<uint32_t>(fabric_.report.full_yarns), static_cast<uint32_t>(ply), fabric_.ply_radius,
-                       spec_.fibres.twist, lap);
+  return stored_length(yarn_number(), static_cast<uint32_t>(ply), fabric_.ply_radius, spec_.fibres.twist, lap);
 }
 
 void YarnCutter::begin_run(const Stretch& stretch, PlyRun::Kind kind, size_t curves, double radius) {
   PlyRun run;
-  run.first_vertex = static_cast<uint32_t>(fabric_.anchors.size());
+  run.first_vertex = static_cast<uint32_t>(out_.anchors.size());
   run.count = static_cast<uint32_t>(stretch.count);
   run.plies = static_cast<uint32_t>(curves);
   run.kind = kind;
   run.radius = static_cast<float>(radius);
-  run.yarn = static_cast<uint32_t>(fabric_.report.full_yarns);
+  run.yarn = yarn_number();
   run.chart = chart_;
   run.ghost_ends = stretch.ghost_ends;
   run.first_place = first_place_;
-  fabric_.runs.push_back(run);
+  out_.runs.push_back(run);
 }
 
 void YarnCutter::add_places(const FlatYarn& yarn, const Stretch& stretch) {
@@ -151,7 +149,7 @@ void YarnCutter::add_places(const FlatYarn& yarn, const Stretch& stretch) {
     return k < total ? yarn.place[k].along : yarn.place[(k - 1) % period + 1].along + lap * double((k - 1) / period);
   };
   const double start = along(ghost_ends ? 1 : 0), length = along(ghost_ends ? count - 2 : count - 1) - start;
-  const bool back = !ghost_ends && fabric_.report.full_yarns % 2 == 1;
+  const bool back = !ghost_ends && yarn_number() % 2 == 1;
   for (size_t i = 0; i < count; ++i) {
     const size_t k = begin + i;
     YarnPlace place = yarn.place[k < total ? k : (k - 1) % period + 1];
@@ -166,7 +164,7 @@ void YarnCutter::add_places(const FlatYarn& yarn, const Stretch& stretch) {
     }
     const dvec2 uv = map_.uv_per_metre * place.middle;
     const double done = along(i) - start;
-    fabric_.place.push_back({float(strand_ + (back ? length - done : done)), place.stitch, float(uv.x), float(uv.y)});
+    out_.place.push_back({float(strand_ + (back ? length - done : done)), place.stitch, float(uv.x), float(uv.y)});
   }
   strand_ += length;
 }
@@ -175,8 +173,8 @@ void YarnCutter::add_vertex(const Place& place, const dvec3& position, const dve
   const dvec2 uv = map_.uv_per_metre * dvec2(position);
   Anchor anchor = anchor_of(position, normal, samples_[place.k], uv);
   anchor.length = length;
-  fabric_.anchors.push_back(anchor);
-  uv_.push_back(uv + place.laps * lap_);
+  out_.anchors.push_back(anchor);
+  out_.uv.push_back(uv + place.laps * lap_);
 }
 
 // Ghosts take the very anchor of the sample they repeat, so that the ends meet to the last bit.

@@ -5,15 +5,40 @@
 
 namespace wale {
 
-/// Ties the yarns of one chart to the mesh and cuts them where the cloth ends: what lies on the chart or within half a
-/// stitch of its border stays. Appends to the fabric's runs, anchors and counters, and to `uv` per vertex.
+/// What is left of a few yarns: their runs, counted from their own first vertex and place, and what Fabric and its
+/// report take of them.
+struct CutYarns {
+  std::vector<PlyRun> runs;
+  std::vector<Anchor> anchors;
+  std::vector<StrandPlace> place;
+  std::vector<dvec2> uv;  ///< per vertex, in the flat knit
+  size_t yarns = 0, flyaways = 0, samples_outside = 0, samples_extrapolated = 0, jumps_cut = 0;
+};
+
+/// Where yarns are cut: one chart of a fabric whose mesh, charts, scales and radii are known.
+struct YarnCutting {
+  const Fabric& fabric;
+  uint32_t chart;
+  const ChartMap& map;
+  const FabricSpec& spec;
+  const FibreBundle* bundle;  ///< the fibres of its plies, where they are explicit
+  double flyaway_radius;      ///< metres, 0 where there are none
+};
+
+/// Cuts all yarns of a chart and appends them to its fabric, in their order, and to `uv` per vertex; on `threads`
+/// threads, which change nothing.
+void cut_yarns(Fabric& fabric, const YarnCutting& cutting, const FlatKnit& knit, unsigned threads,
+               std::vector<dvec2>& uv);
+
+/// Ties yarns of one chart to the mesh and cuts them where the cloth ends: what lies on the chart or within half a
+/// stitch of its border stays.
 class YarnCutter {
  public:
-  /// `bundle`: the fibres of its plies, where they are explicit.
-  /// `flyaway_radius`: metres, 0 where there are none.
-  YarnCutter(Fabric& fabric, uint32_t chart, const ChartMap& map, const FabricSpec& spec, const FibreBundle* bundle,
-             double flyaway_radius, std::vector<dvec2>& uv);
+  /// `first_yarn`: number of the first yarn of all that is added.
+  YarnCutter(const YarnCutting& cutting, const ChartLocator& locator, size_t first_yarn);
   void add(const FlatYarn& yarn);
+  /// All that has been added.
+  CutYarns take() { return std::move(out_); }
 
  private:
   struct Sample {
@@ -48,14 +73,17 @@ class YarnCutter {
   void add_vertex(const Place& place, const dvec3& position, const dvec3& normal, float length);
   Anchor anchor_of(const dvec3& position, const dvec3& normal, const Sample& centre, dvec2 uv) const;
 
-  Fabric& fabric_;
+  uint32_t yarn_number() const { return static_cast<uint32_t>(first_yarn_ + out_.yarns); }
+
+  const Fabric& fabric_;
   const uint32_t chart_;
   const ChartMap& map_;
   const FabricSpec& spec_;
   const FibreBundle* bundle_;
   const double flyaway_radius_;
-  std::vector<dvec2>& uv_;
-  const ChartLocator locator_;
+  const ChartLocator& locator_;
+  const size_t first_yarn_;
+  CutYarns out_;
   std::vector<Sample> samples_;
   dvec2 lap_{0, 0};  ///< UV of one lap of a closed yarn
   std::vector<uint32_t> fibre_order_, fibre_groups_;

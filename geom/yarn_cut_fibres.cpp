@@ -37,7 +37,7 @@ void YarnCutter::add_fibre_runs(const FlatYarn& yarn, const Stretch& stretch) {
     const double migration = bundle_->migration_per_metre(stored.stretch * lap);
     for (size_t g = 0; g + 1 < fibre_groups_.size(); ++g) {
       begin_run(stretch, PlyRun::Kind::fibre, fibre_groups_[g + 1] - fibre_groups_[g], bundle_->fibre_radius());
-      fabric_.runs.back().ply = static_cast<uint32_t>(p);
+      out_.runs.back().ply = static_cast<uint32_t>(p);
       for (size_t f = fibre_groups_[g]; f < fibre_groups_[g + 1]; ++f)
         for (size_t i = 0; i < stretch.count; ++i) {
           const Place place = place_in(yarn, stretch.begin + i);
@@ -63,7 +63,7 @@ void YarnCutter::add_flyaways(const FlatYarn& yarn, const Stretch& stretch) {
     piece.radius = fabric_.ply_radius;
     piece.twist = spec_.fibres.twist;
     piece.migrations = spec_.fibres.migration_rate;
-    piece.key = w_hash2(static_cast<uint32_t>(fabric_.report.full_yarns), static_cast<uint32_t>(p));
+    piece.key = w_hash2(yarn_number(), static_cast<uint32_t>(p));
     std::vector<Place> places;
     for (size_t i = begin; i < end; ++i) {
       const Place place = place_in(yarn, i);
@@ -84,7 +84,7 @@ void YarnCutter::add_flyaways(const FlatYarn& yarn, const Stretch& stretch) {
       points.resize(count);
       const std::vector<dvec3> normal = frames(points);
       begin_run({0, count, false}, PlyRun::Kind::fibre, 1, flyaway_radius_);
-      PlyRun& run = fabric_.runs.back();
+      PlyRun& run = out_.runs.back();
       run.ply = static_cast<uint32_t>(p);
       run.first_place += static_cast<uint32_t>(flyaway.sample + stretch.ghost_ends);
       run.one_place = true;
@@ -93,7 +93,7 @@ void YarnCutter::add_flyaways(const FlatYarn& yarn, const Stretch& stretch) {
         if (i > 0) s += glm::distance(points[i - 1], points[i]);
         add_vertex(root, points[i], normal[i], stored.at(s));
       }
-      ++fabric_.report.flyaways;
+      ++out_.flyaways;
     }
   }
 }

@@ -81,7 +81,7 @@ class Start {
 };
 
 Stats stats_of(const Scene& scene, const World& world, const std::vector<RenderDevice>& devices,
-               const Features& features, const Rendered& r) {
+               const Features& features, const Rendered& r, bool programs_cached) {
   Stats s;
   s.scene = scene.file;
   const Device& first = *devices.front().device;
@@ -92,7 +92,7 @@ Stats stats_of(const Scene& scene, const World& world, const std::vector<RenderD
   s.kernel_options = first.traits().build_options;
   for (const auto& reason : explain(world, scene.integrator, features))
     if (reason.used) s.features.push_back(reason.feature);
-  for (const auto& [name, seconds] : r.counts.program_seconds) s.programs.push_back({name, seconds, false});
+  for (const auto& [name, seconds] : r.counts.program_seconds) s.programs.push_back({name, seconds, programs_cached});
   uint64_t segments = 0, vertices = 0, pool = 0, path_bytes = 0;
   for (const auto& f : world.fabrics) segments += f.report.segments, vertices += f.report.vertices;
   for (size_t d = 0; d < devices.size(); ++d) {
@@ -153,16 +153,17 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
     for (auto& stage : wavefront_stages(features)) stages.push_back(std::move(stage));
     return Rehearsal::Plan{stages, features.options(), args.kernel_dir};
   });
+  // So are the devices opened: their drivers bring large libraries.
+  std::future<World> knitted = std::async(std::launch::async, [&] {
+    Progress bar("knit", args.quiet);
+    World made = build_world(scene, loaders, [&](const std::string&, double fraction) { bar.update(fraction); });
+    bar.finish();
+    return made;
+  });
   Devices devices(args.device);
   rehearsal.begin(devices.open());
   start.step("open devices");
-
-  World world;
-  {
-    Progress bar("knit", args.quiet);
-    world = build_world(scene, loaders, [&](const std::string&, double fraction) { bar.update(fraction); });
-    bar.finish();
-  }
+  const World world = knitted.get();
   if (!args.quiet)
     for (const auto& note : world.notes) fmt::print(stderr, "note: {}\n", note);
   start.step("knit");
@@ -184,11 +185,12 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   for (const auto& output : args.outputs) write_image(r.image, output, scene.film.exposure, scene.film.view);
   const Features features = analyse(world, scene.integrator, aovs, devices.list().front().device->traits());
   if (!args.stats.empty()) {
-    Stats stats = stats_of(scene, world, devices.list(), features, r);
+    Stats stats = stats_of(scene, world, devices.list(), features, r, rehearsal.cached());
     stats.first_sample_seconds = start.seconds();
     stats.start = start.steps();
     write_stats(stats, args.stats);
   }
+  if (!stop_requested()) rehearsal.finish();  // a render shorter than that would leave it to each one after it
   const double rays = double(r.counts.primary + r.counts.bounce + r.counts.shadow);
   if (!args.quiet)
     fmt::print(stderr, "{} samples per pixel in {}, {:.2f} Mrays/s\n", r.samples, duration_text(r.seconds),

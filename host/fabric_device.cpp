@@ -164,6 +164,10 @@ FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> i
     out.cell_count += cells_of(fabric);
     if (!fabric.lattice.empty()) lattices.push_back({&fabric, f, inputs[f].material, inputs[f].tau});
   }
+  if (stage != LocalStage::exact)
+    for (const FabricInput& input : inputs)
+      if (!input.fabric->patches.empty() && input.fabric->cell_segments.offset.empty())
+        bug("fabric '{}': knitted without the lists that its local stage reads", input.fabric->name);
   if (!lattices.empty() && stage != LocalStage::exact)
     user_error(
         "fabric '{}': it is held as a lattice, which has no UV cells; use integrator.local_stage \"exact\", or "

@@ -1,8 +1,10 @@
 #include "host/fabric_warp.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "geom/error.h"
+#include "host/large_pages.h"
 #include "host/program.h"
 
 namespace wale {
@@ -10,7 +12,7 @@ namespace {
 
 // What the warp reads, of all fabrics.
 struct WarpInput {
-  std::vector<WAnchor> anchors;
+  size_t vertices = 0;
   std::vector<float> positions, normals, cloth;
   std::vector<uint32_t> triangles;
   std::vector<uint8_t> flags;
@@ -18,9 +20,8 @@ struct WarpInput {
 
 void append(WarpInput& out, const Fabric& fabric, dvec3 origin) {
   const uint32_t first_triangle = uint32_t(out.triangles.size() / 3), first_point = uint32_t(out.positions.size() / 3);
-  const size_t first_vertex = out.anchors.size();
-  for (const Anchor& a : fabric.anchors)
-    out.anchors.push_back({a.triangle + first_triangle, a.b1, a.b2, a.height, a.nx, a.ny, a.nz, a.length});
+  const size_t first_vertex = out.vertices;
+  out.vertices += fabric.anchors.size();
   for (size_t i = 0; i < fabric.mesh.position.size(); ++i)
     for (int k = 0; k < 3; ++k) {
       out.positions.push_back(float(fabric.mesh.position[i][k] - origin[k]));
@@ -37,7 +38,7 @@ void append(WarpInput& out, const Fabric& fabric, dvec3 origin) {
       out.cloth.push_back(float(xy.y));
     }
   }
-  out.flags.resize(out.anchors.size(), 0);
+  out.flags.resize(out.vertices, 0);
   for (const PlyRun& run : fabric.runs)
     for (uint32_t p = 0; p < run.plies; ++p) {
       const size_t first = first_vertex + run.first_vertex + size_t(p) * run.count;
@@ -47,19 +48,44 @@ void append(WarpInput& out, const Fabric& fabric, dvec3 origin) {
     }
 }
 
+// In pieces that stay in a cache, so that the host never holds all of them twice.
+void write_anchors(const Device& device, std::span<const FabricInput> inputs, const Buffer<WAnchor>& out) {
+  constexpr size_t kPiece = 1u << 14;
+  std::vector<WAnchor> piece;
+  uint32_t first_triangle = 0;
+  size_t at = 0;
+  for (const FabricInput& input : inputs) {
+    const Fabric& fabric = *input.fabric;
+    if (!fabric.lattice.empty()) continue;
+    for (size_t first = 0; first < fabric.anchors.size(); first += piece.size()) {
+      piece.resize(std::min(kPiece, fabric.anchors.size() - first));
+      for (size_t i = 0; i < piece.size(); ++i) {
+        const Anchor& a = fabric.anchors[first + i];
+        piece[i] = {a.triangle + first_triangle, a.b1, a.b2, a.height, a.nx, a.ny, a.nz, a.length};
+      }
+      device.queue().enqueueWriteBuffer(out.cl(), CL_TRUE, at * sizeof(WAnchor), piece.size() * sizeof(WAnchor),
+                                        piece.data());
+      at += piece.size();
+    }
+    first_triangle += uint32_t(fabric.mesh.triangle.size());
+  }
+}
+
 }  // namespace
 
 FabricWarp::FabricWarp(const Device& device, std::span<const FabricInput> inputs, dvec3 origin, size_t more) {
   WarpInput in;
   for (const FabricInput& input : inputs)
     if (input.fabric->lattice.empty()) append(in, *input.fabric, origin);
-  count_ = uint32_t(in.anchors.size());
+  count_ = uint32_t(in.vertices);
   points_ = Buffer<float>(device, (count_ + more) * 3);
   frames_ = Buffer<float>(device, (count_ + more) * W_FRAME_WORDS);
+  ask_for_large_pages(device, frames_.cl());
   positions_ = Buffer<float>(device, in.positions);
   triangles_ = Buffer<uint32_t>(device, in.triangles);
   if (count_ == 0) return;
-  anchors_ = Buffer<WAnchor>(device, in.anchors);
+  anchors_ = Buffer<WAnchor>(device, count_);
+  write_anchors(device, inputs, anchors_);
   normals_ = Buffer<float>(device, in.normals);
   cloth_ = Buffer<float>(device, in.cloth);
   flags_ = Buffer<uint8_t>(device, in.flags);

@@ -1,7 +1,4 @@
-// The only file that knows OpenImageIO.
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
+// Images as files: what is checked before and after the coder.
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +7,7 @@
 #include "host/atomic_file.h"
 #include "host/exr_header.h"
 #include "host/image.h"
+#include "host/image_coder.h"
 #include "host/png_chunks.h"
 #include "host/schema.h"
 
@@ -27,7 +25,10 @@ std::string suffix_of(const std::filesystem::path& file) {
   return suffix;
 }
 
-std::string reason(const std::string& text) { return text.empty() ? "unknown reason" : one_line(text); }
+// Throws a user error that begins with `what` when a coder gave a reason.
+void require_coded(const std::string& failure, const std::string& what) {
+  if (!failure.empty()) user_error("{}: {}", what, one_line(failure));
+}
 
 // Fixed dither in [0,1): the finaliser of MurmurHash3 on the pixel, so that smooth shades show no bands and the same
 // image gives the same bytes.
@@ -42,9 +43,11 @@ double dither(int x, int y, int channel) {
 // file that none of them knows; these few are tested with damaged files.
 std::string format_of(std::string_view bytes, const std::filesystem::path& file) {
   constexpr std::pair<std::string_view, const char*> kFirstBytes[] = {
-      {"v/1\x01", "openexr"}, {"\x89PNG", "png"}, {"\xff\xd8\xff", "jpeg"}, {"#?", "hdr"}, {{"II*\0", 4}, "tiff"},
-      {{"MM\0*", 4}, "tiff"}, {"BM", "bmp"}, {"P1", "pnm"}, {"P2", "pnm"}, {"P3", "pnm"}, {"P4", "pnm"}, {"P5", "pnm"},
-      {"P6", "pnm"}, {"PF", "pnm"}, {"Pf", "pnm"}};
+      {"v/1\x01", "openexr"}, {"\x89PNG", "png"},     {"\xff\xd8\xff", "jpeg"},
+      {"#?", "hdr"},          {{"II*\0", 4}, "tiff"}, {{"MM\0*", 4}, "tiff"},
+      {"BM", "bmp"},          {"P1", "pnm"},          {"P2", "pnm"},
+      {"P3", "pnm"},          {"P4", "pnm"},          {"P5", "pnm"},
+      {"P6", "pnm"},          {"PF", "pnm"},          {"Pf", "pnm"}};
   for (const auto& [first, format] : kFirstBytes)
     if (bytes.starts_with(first)) return format;
   if (suffix_of(file) == ".tga") return "targa";  // has no first bytes of its own
@@ -61,9 +64,9 @@ void check_finite(const Image& image, const std::string& file) {
 }
 
 // Integer files are sRGB encoded unless they say otherwise; alpha never is.
-void decode_srgb(Image& image, const OIIO::ImageSpec& spec) {
+void decode_srgb(Image& image, int alpha) {
   for (size_t c = 0; c < image.channels.size(); ++c) {
-    if (int(c) == spec.alpha_channel) continue;
+    if (int(c) == alpha) continue;
     for (size_t i = c; i < image.pixels.size(); i += image.channels.size())
       image.pixels[i] = static_cast<float>(srgb_to_linear(image.pixels[i]));
   }
@@ -92,27 +95,16 @@ std::vector<unsigned char> display_bytes(const Image& image, double exposure, co
 
 // The PNG is made in memory: OpenImageIO's writer does not notice a full disk.
 std::string png_file(const Image& image, double exposure, const std::string& view) {
-  const auto bytes = display_bytes(image, exposure, view);
-  OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  OIIO::Filesystem::IOVecOutput memory;
-  const auto output = OIIO::ImageOutput::create("png");
-  if (!output || !output->set_ioproxy(&memory) || !output->open("memory.png", spec) ||
-      !output->write_image(spec.format, bytes.data()) || !output->close())
-    bug("PNG: {}", reason(output ? output->geterror() : OIIO::geterror()));
-  return {memory.buffer().begin(), memory.buffer().end()};
+  std::string png;
+  const std::string failure =
+      image_coder().encode_png(display_bytes(image, exposure, view), image.width, image.height, png);
+  if (!failure.empty()) bug("PNG: {}", one_line(failure));
+  return png;
 }
 
 void write_exr(const Image& image, const std::filesystem::path& file) {
-  OIIO::ImageSpec spec(image.width, image.height, int(image.channels.size()), OIIO::TypeDesc::FLOAT);
-  spec.channelnames = image.channels;
-  spec.attribute("compression", "zip");
   AtomicFile out(file);
-  const auto output = OIIO::ImageOutput::create(out.temporary().string());
-  if (!output) bug("{}: OpenImageIO cannot write this suffix: {}", file.string(), reason(OIIO::geterror()));
-  if (!output->open(out.temporary().string(), spec) || !output->write_image(spec.format, image.pixels.data()) ||
-      !output->close())
-    user_error("{}: cannot be written: {}", file.string(), reason(output->geterror()));
+  require_coded(image_coder().write_exr(image, out.temporary().string()), file.string() + ": cannot be written");
   out.commit();
 }
 
@@ -129,28 +121,23 @@ Image parse_image(std::string_view bytes, const std::filesystem::path& path, boo
   const std::string format = format_of(bytes, path);
   if (format == "openexr") require_plausible_exr(bytes, file);
   if (format == "png") require_whole_png_chunks(bytes, file);
-  const auto input = OIIO::ImageInput::create(format);
-  OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size());
-  OIIO::ImageSpec spec, how;
-  how.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are stored: alpha must not darken them
-  if (!input || !input->set_ioproxy(&memory) || !input->open(file, spec, how))
-    user_error("{}: cannot be read as an image: {}", file, reason(input ? input->geterror() : OIIO::geterror()));
-  const uint64_t values = uint64_t(std::max(0, spec.width)) * std::max(0, spec.height) * std::max(0, spec.nchannels);
-  if (values == 0 || values > kMaxValues || spec.deep)
-    user_error("{}: {} x {} with {} channels{} cannot be used", file, spec.width, spec.height, spec.nchannels,
-               spec.deep ? " (deep)" : "");
-  if (values > kBaseValues + kValuesPerByte * bytes.size())
-    user_error("{}: {} x {} pixels do not fit into its {} bytes; is the file cut off?", file, spec.width, spec.height,
-               bytes.size());
+  int alpha = -1;
+  bool srgb = false;
   Image image;
-  image.width = spec.width;
-  image.height = spec.height;
-  image.channels = spec.channelnames;
-  image.pixels.resize(values);
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data()))
-    user_error("{}: cannot be read as an image: {}", file, reason(input->geterror()));
-  const std::string space = spec.get_string_attribute("oiio:ColorSpace", "sRGB");
-  if (!spec.format.is_floating_point() && !OIIO::Strutil::iequals(space, "linear")) decode_srgb(image, spec);
+  const auto accept = [&](const ImageHeader& header) {
+    const size_t channels = header.channels.size();
+    const uint64_t values = uint64_t(std::max(0, header.width)) * std::max(0, header.height) * channels;
+    if (values == 0 || values > kMaxValues || header.deep)
+      user_error("{}: {} x {} with {} channels{} cannot be used", file, header.width, header.height, channels,
+                 header.deep ? " (deep)" : "");
+    if (values > kBaseValues + kValuesPerByte * bytes.size())
+      user_error("{}: {} x {} pixels do not fit into its {} bytes; is the file cut off?", file, header.width,
+                 header.height, bytes.size());
+    alpha = header.alpha;
+    srgb = header.srgb;
+  };
+  require_coded(image_coder().decode(bytes, format, file, accept, image), file + ": cannot be read as an image");
+  if (srgb) decode_srgb(image, alpha);
   if (finite) check_finite(image, file);
   return image;
 }
@@ -171,6 +158,7 @@ void require_writable(const std::filesystem::path& file) {
   const std::string suffix = suffix_of(file);
   if (suffix != ".exr" && suffix != ".png")
     user_error("{}: images are written as .exr or .png, not \"{}\"", file.string(), suffix);
+  require_image_coder();
   require_writable_path(file);
 }
 

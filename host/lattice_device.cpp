@@ -1,11 +1,14 @@
 #include "host/lattice_device.h"
 
+#include "host/large_pages.h"
 #include "host/program.h"
 
 namespace wale {
 
 LatticeDevice::LatticeDevice(const Device& device, const LatticeTables& tables)
-    : lattice(device, tables.lattice()), tiles(device, tables.words()), patch_bits(tables.patch_bits()) {}
+    : lattice(in_large_pages(device, tables.lattice())),
+      tiles(device, tables.words()),
+      patch_bits(tables.patch_bits()) {}
 
 void LatticeDevice::warp(const Device& device, std::span<const StoredRun> runs, const Buffer<float>& points,
                          const Buffer<float>& frames) const {

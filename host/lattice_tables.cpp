@@ -133,7 +133,7 @@ void LatticeTables::write_entry(Piece& piece, size_t number) {
   head[W_LEAF_LAYOUT] = n | lanes << 8;
   head[W_LEAF_TAU] = std::bit_cast<uint32_t>(piece.input.tau);
   head[W_LEAF_FABRIC] = piece.input.number;
-  head[W_LEAF_ENDS] = (entry.open_start ? 1u : 0u) | (entry.open_end ? 2u : 0u);
+  head[W_PATCH_ENDS] = (entry.open_start ? 1u : 0u) | (entry.open_end ? 2u : 0u);
   head[W_LEAF_PLY] = run.first_ply;
   for (uint32_t p = 0; p < n; ++p) {
     if (entry.open_start) head[W_LEAF_CUTS] |= 1u << p;

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "geom/error.h"
+#include "host/large_pages.h"
 #include "shared/wale_types.h"
 
 namespace wale {
@@ -60,7 +61,9 @@ LeafBuffers::LeafBuffers(const Device& device, std::span<const uint32_t> leaf_wo
   units.push_back(at);
   for (size_t i = 0; i < parts_.size(); ++i) {
     parts_[i].words = Buffer<uint32_t>(device, units[i] * 4 + kTail);
-    parts_[i].words.fill(device, 0);
+    ask_for_large_pages(device, parts_[i].words.cl());
+    constexpr uint32_t kZeros[kTail] = {};
+    device.queue().enqueueWriteBuffer(parts_[i].words.cl(), CL_TRUE, units[i] * 16, sizeof(kZeros), kZeros);
   }
 }
 

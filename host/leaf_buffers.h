@@ -19,7 +19,7 @@ class LeafBuffers {
   };
 
   LeafBuffers() = default;
-  /// Room for leaves of `leaf_words` words each (multiples of 4), all zeros; appends their numbers to `numbers`. Throws
+  /// Room for leaves of `leaf_words` words each (multiples of 4), zeros behind the last; appends their numbers to `numbers`. Throws
   /// a device error when they do not fit W_LEAF_BUFFERS buffers, or would have numbers from `end_of_numbers` on.
   LeafBuffers(const Device& device, std::span<const uint32_t> leaf_words, uint64_t end_of_numbers,
               std::vector<uint32_t>& numbers);

@@ -10,23 +10,25 @@ namespace wale {
 
 struct PlyTree;
 
-/// What a tree of plies needs to follow moved positions without being built again: about 1.4 bytes a segment. Nodes
+/// What a tree of plies needs to follow moved positions without being built again: about one byte a segment. Nodes
 /// keep their children; leaves and all boxes change, on the device alone. A tree whose positions did not move stays bit
 /// for bit what it was.
 class PlyRefit {
  public:
   PlyRefit() = default;
-  /// `runs` as kernel pack_leaves takes them, `leaf_offset` ascending, one a patch; all buffers are kept.
-  PlyRefit(const Device& device, const Buffer<uint32_t>& runs, const Buffer<float>& positions,
-           const std::vector<uint32_t>& leaf_offset, const WideTree& wide, const PlyTree& tree);
+  /// `runs` as kernel pack_leaves takes them; all buffers are kept.
+  PlyRefit(const Device& device, const Buffer<uint32_t>& runs, const Buffer<float>& positions, const WideTree& wide,
+           const PlyTree& tree);
 
   /// Packs and refits what `positions` holds now; returns before the device is done.
   void run(const Device& device);
   /// On the device.
-  size_t bytes() const { return runs_.bytes() + places_.bytes() + parents_.bytes(); }
+  size_t bytes() const { return runs_.bytes(); }
 
  private:
-  Buffer<uint32_t> runs_, places_, parents_;
+  size_t patches() const { return runs_.count() / 4; }
+
+  Buffer<uint32_t> runs_;
   std::vector<uint32_t> level_offset_;
   std::vector<LeafBuffers::Part> parts_;
   cl::Kernel leaves_, nodes_;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geom/error.h"
+#include "host/large_pages.h"
 #include "host/program.h"
 #include "shared/wale_types.h"
 
@@ -20,7 +21,6 @@ uint32_t leaf_stride(const PlyPatch& patch) { return ((patch.intervals + 3) * pa
 uint32_t leaf_words(const PlyPatch& patch) { return W_LEAF_HEADER + 3 * leaf_stride(patch); }
 
 void write_header(const PlyPatch& patch, uint32_t* leaf) {
-  const bool open = !patch.ghost_ends;
   const uint32_t lanes = patch.intervals * patch.plies;
   leaf[W_LEAF_RADIUS] = std::bit_cast<uint32_t>(patch.radius);
   leaf[W_LEAF_SEGMENT] = patch.first_vertex + patch.first;
@@ -31,8 +31,6 @@ void write_header(const PlyPatch& patch, uint32_t* leaf) {
   leaf[W_LEAF_CELL] = patch.cell;
   leaf[W_LEAF_FABRIC] = patch.fabric;
   leaf[W_LEAF_PLY] = patch.first_ply;
-  leaf[W_LEAF_ENDS] =
-      (open && patch.first == 0 ? 1u : 0u) | (open && patch.first + patch.intervals + 1 == patch.count ? 2u : 0u);
 }
 
 // Leaf by leaf in pieces, so that the host never holds all leaves.
@@ -48,6 +46,20 @@ void write_headers(const Device& device, std::span<const PlyPatch> patches, cons
       for (size_t i = first; i < last; ++i) write_header(patches[i], words.data() + place(i) - begin);
       device.queue().enqueueWriteBuffer(part.words.cl(), CL_TRUE, begin * 4, words.size() * 4, words.data());
     }
+  }
+}
+
+void place_leaves(const Device& device, uint32_t nodes, const PlyTree& tree) {
+  cl::Kernel place(build_program(device, "pack.cl"), "place_leaves");
+  place.setArg(0, tree.nodes.cl());
+  place.setArg(4, nodes);
+  for (const LeafBuffers::Part& part : tree.leaves.parts()) {
+    if (part.leaves == 0) continue;
+    place.setArg(1, part.words.cl());
+    place.setArg(2, part.first_number);
+    place.setArg(3, tree.leaf_offset[part.first_leaf + part.leaves - 1] + 1);
+    device.queue().enqueueNDRangeKernel(place, cl::NullRange, device.large_global(size_t(nodes) * W_NODE_WIDTH),
+                                        device.local());
   }
 }
 
@@ -120,9 +132,10 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
   if (!group_box.empty())
     for (const PlyPatch& patch : patches) cells.push_back(patch.cell);
   const WideTree wide = build_wide_tree(boxes, tree.leaf_offset, cells, group_box);
-  tree.nodes = Buffer<uint32_t>(device, wide.words);
+  tree.nodes = in_large_pages(device, wide.words);
+  place_leaves(device, uint32_t(wide.nodes()), tree);
   tree.node_cell = Buffer<uint32_t>(device, group_box.empty() ? std::vector<uint32_t>{} : wide.node_cell);
-  if (updatable) tree.refit = std::make_unique<PlyRefit>(device, runs, positions, tree.leaf_offset, wide, tree);
+  if (updatable) tree.refit = std::make_unique<PlyRefit>(device, runs, positions, wide, tree);
   tree.node_count = wide.nodes();
   if (device.traits().traversal == Traversal::simt && group_box.empty()) {
     tree.quantised = QuantisedTree(device, wide, tree.nodes);
@@ -141,7 +154,7 @@ void refit(const Device& device, PlyTree& tree) {
   tree.bounds = Box{};
   for (int k = 0; k < 3; ++k)
     for (int slot = 0; slot < W_NODE_WIDTH; ++slot) {
-      if (root[96 + slot] == W_NONE) continue;
+      if (root[W_NODE_CHILD + slot] == W_NONE) continue;
       const float lo = std::bit_cast<float>(root[16 * k + slot]), hi = std::bit_cast<float>(root[48 + 16 * k + slot]);
       if (!(lo >= -kLargestCoordinate && hi <= kLargestCoordinate))
         user_error(

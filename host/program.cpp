@@ -1,5 +1,6 @@
 #include "host/program.h"
 
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <set>
@@ -58,14 +59,15 @@ ProgramText with_options(const DeviceTraits& traits, const std::string& file, st
   return {file, std::move(source), std::move(options)};
 }
 
+// What a Rehearsal promises; not valid where it promises nothing.
+std::shared_future<void> ahead_of(const Device& device, const ProgramText& text) {
+  const std::lock_guard lock(device.programs().mutex);
+  const auto found = device.programs().ahead.find(text.key());
+  return found != device.programs().ahead.end() ? found->second : std::shared_future<void>();
+}
+
 cl::Program compile(const Device& device, const ProgramText& text) {
-  std::shared_future<void> ahead;
-  {
-    const std::lock_guard lock(device.programs().mutex);
-    const auto found = device.programs().ahead.find(text.key());
-    if (found != device.programs().ahead.end()) ahead = found->second;
-  }
-  if (ahead.valid()) ahead.wait();
+  if (const auto ahead = ahead_of(device, text); ahead.valid()) ahead.wait();
   return build_now(device, text);
 }
 
@@ -110,6 +112,12 @@ cl::Program build_now(const Device& device, const ProgramText& text) {
 cl::Program build_program(const Device& device, const std::string& file, const std::string& options,
                           const std::filesystem::path& kernel_dir) {
   return compile(device, program_text(device.traits(), file, options, kernel_dir));
+}
+
+bool is_being_compiled(const Device& device, const std::string& file, const std::string& options,
+                       const std::filesystem::path& kernel_dir) {
+  const auto ahead = ahead_of(device, program_text(device.traits(), file, options, kernel_dir));
+  return ahead.valid() && ahead.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
 }
 
 cl::Program build_program_text(const Device& device, const std::string& text, const std::string& options) {

@@ -13,7 +13,7 @@ std::vector<uint32_t> first_leaves(const WideTree& wide) {
   uint32_t leaves = 0;
   for (size_t node = 0; node < wide.nodes(); ++node) {
     first.push_back(leaves);
-    const uint32_t* codes = wide.words.data() + node * W_NODE_WORDS + 96;
+    const uint32_t* codes = wide.words.data() + node * W_NODE_WORDS + W_NODE_CHILD;
     for (int slot = 0; slot < W_NODE_WIDTH; ++slot) leaves += codes[slot] != W_NONE && (codes[slot] & W_CHILD_LEAF);
   }
   first.push_back(leaves);

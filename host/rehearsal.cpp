@@ -10,9 +10,11 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <chrono>
+#include <cstdlib>
 #include <exception>
+#include <tuple>
 
+#include "geom/error.h"
 #include "host/program.h"
 
 namespace wale {
@@ -22,6 +24,7 @@ struct Rehearsal::Part {
   ProgramText text;
   std::vector<std::string> kernels;
   size_t items = 1;
+  bool can_wait = false;
   std::promise<void> done;
 };
 
@@ -30,9 +33,6 @@ struct Rehearsal::Shared {
 };
 
 namespace {
-
-// A program out of the driver's cache is there sooner; its kernels are then taken to be there too.
-constexpr auto kOutOfCache = std::chrono::milliseconds(60);
 
 // Every argument zero: a buffer of zeros, or a zero of the parameter's size. PoCL takes any size for a struct, so that
 // the largest goes first.
@@ -52,9 +52,7 @@ void set_zeros(cl::Kernel& kernel, const cl::Buffer& zeros) {
 
 void build_and_launch(const Device& device, const ProgramText& text, const std::vector<std::string>& kernels,
                       size_t items) {
-  const auto start = std::chrono::steady_clock::now();
-  cl::Program program = build_now(device, text);
-  if (std::chrono::steady_clock::now() - start < kOutOfCache) return;
+  const cl::Program program = build_now(device, text);
   const Buffer<uint32_t> zeros(device, std::vector<uint32_t>(1024, 0));
   for (const auto& name : kernels) {
     cl::Kernel kernel(program, name.c_str());
@@ -66,35 +64,61 @@ void build_and_launch(const Device& device, const ProgramText& text, const std::
 
 }  // namespace
 
-// Parts of all devices in one order, the same in every process: first what is needed first, then the longest.
+static ProgramText text_of(const DeviceTraits& traits, const StageProgram& program, const Rehearsal::Plan& plan) {
+  return program.before_rays ? program_text(traits, program.file)
+                             : program_text(traits, program.file, plan.options, plan.kernel_dir);
+}
+
+// Parts of all devices in one order, the same in every process: first what is needed first, then the
+// longest, what can wait last.
 static std::vector<Rehearsal::Part> parts_of(const std::vector<Device>& devices, const Rehearsal::PlanOf& plan_of) {
   std::vector<Rehearsal::Part> parts;
   for (const Device& device : devices) {
     const Rehearsal::Plan plan = plan_of(device.traits());
     const size_t first = parts.size();
-    for (const Stage& stage : plan.stages) {
-      if (!stage.used || !device.traits().parallel_builds) continue;
+    if (!device.traits().parallel_builds) continue;
+    for (const StageProgram& program : programs_of(plan.stages, device.traits().compiles_at_launch)) {
       Rehearsal::Part& part = parts.emplace_back();
       part.device = device;
-      part.text = stage.before_rays ? program_text(device.traits(), stage.file)
-                                    : program_text(device.traits(), stage.file, plan.options, plan.kernel_dir);
-      part.kernels = stage.kernels;
-      part.items = stage.before_rays ? Device::kLargeGrid : 1;
+      part.text = text_of(device.traits(), program, plan);
+      part.kernels = program.kernels;
+      part.items = program.before_rays ? Device::kLargeGrid : 1;
+      part.can_wait = program.can_wait;
     }
     std::stable_sort(parts.begin() + std::ptrdiff_t(first), parts.end(), [](const auto& a, const auto& b) {
-      return std::pair(b.items, b.text.source.size()) < std::pair(a.items, a.text.source.size());
+      return std::tuple(b.items, a.can_wait, b.text.source.size()) <
+             std::tuple(a.items, b.can_wait, a.text.source.size());
     });
   }
   return parts;
 }
 
+// What decides which programs are compiled, as far as it is known before a device is: `some_device` stands for those
+// that the names mean.
+static std::string what_is_compiled(const std::string& devices, const Rehearsal::PlanOf& plan_of) {
+  DeviceTraits some_device;
+  some_device.lanes = 16;
+  some_device.compiles_at_launch = true;
+  std::string all = devices;
+  for (const char* name : {"POCL_DEVICES", "WALE_KERNEL_OPTIONS"})
+    if (const char* value = std::getenv(name)) all += fmt::format("\n{}={}", name, value);
+  const Rehearsal::Plan plan = plan_of(some_device);
+  for (const StageProgram& program : programs_of(plan.stages, some_device.compiles_at_launch))
+    all += '\n' + text_of(some_device, program, plan).key();
+  return all;
+}
+
 Rehearsal::Rehearsal(const std::string& devices, PlanOf plan) : plan_(std::move(plan)) {
+  if (!KernelNote::cache_is_used()) return;  // what children compile would be lost
+  note_ = KernelNote(what_is_compiled(devices, plan_));
+  cached_ = note_->found();
+  if (!cached_) fork_children(devices);
+}
+
+void Rehearsal::fork_children(const std::string& devices) {
   void* memory = mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   int ends[2];
-  if (memory == MAP_FAILED || pipe2(ends, O_CLOEXEC) != 0) {
-    shared_ = nullptr;
-    return;
-  }
+  if (memory == MAP_FAILED || pipe2(ends, O_CLOEXEC) != 0) return;
   shared_ = new (memory) Shared;
   reports_ = ends[0];
   const unsigned count = std::clamp(std::thread::hardware_concurrency(), 1u, 8u);
@@ -137,6 +161,7 @@ void Rehearsal::begin(const std::vector<Device>& devices) {
     const std::lock_guard lock(parts_[i].device.programs().mutex);
     parts_[i].device.programs().ahead.emplace(parts_[i].text.key(), parts_[i].done.get_future());
   }
+  ended_ = reports_ < 0;
   if (reports_ >= 0) threads_.emplace_back([this] { read_reports(); });
   const size_t builders = std::min<size_t>(std::max(1u, std::thread::hardware_concurrency()), parts_.size());
   for (size_t i = 0; i < builders; ++i) threads_.emplace_back([this] { build_next(); });
@@ -144,16 +169,24 @@ void Rehearsal::begin(const std::vector<Device>& devices) {
 
 void Rehearsal::read_reports() {
   uint32_t part = 0;
+  size_t count = 0;
   while (read(reports_, &part, sizeof(part)) == sizeof(part)) {
     const std::lock_guard lock(mutex_);
     if (part < compiled_.size()) compiled_[part] = true;
+    if (++count == parts_.size()) note_->leave();
     reported_.notify_all();
   }
   const std::lock_guard lock(mutex_);  // the children are gone: the rest is compiled here
   for (const int child : children_) waitpid(child, nullptr, 0);
   children_.clear();
   compiled_.assign(compiled_.size(), true);
+  ended_ = true;
   reported_.notify_all();
+}
+
+void Rehearsal::finish() {
+  std::unique_lock lock(mutex_);
+  reported_.wait(lock, [&] { return ended_; });
 }
 
 void Rehearsal::build_next() {
@@ -161,10 +194,11 @@ void Rehearsal::build_next() {
     std::unique_lock lock(mutex_);
     if (next_ >= parts_.size()) return;
     const size_t i = next_++;
-    reported_.wait(lock, [&] { return compiled_[i]; });
+    reported_.wait(lock, [&] { return compiled_[i] || dropped_; });
+    const bool dropped = dropped_;
     lock.unlock();
     try {
-      build_now(parts_[i].device, parts_[i].text);
+      if (!dropped) build_now(parts_[i].device, parts_[i].text);
     } catch (const std::exception&) {
       // Whoever needs the program meets the same fault and says so.
     }
@@ -178,6 +212,8 @@ Rehearsal::~Rehearsal() {
     const std::lock_guard lock(mutex_);
     dropped = next_;
     next_ = parts_.size();
+    dropped_ = true;
+    reported_.notify_all();
   }
   for (size_t i = dropped; i < parts_.size(); ++i) parts_[i].done.set_value();
   {

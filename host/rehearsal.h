@@ -4,11 +4,13 @@
 #include <functional>
 #include <future>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "host/device.h"
+#include "host/kernel_note.h"
 #include "host/stages.h"
 
 namespace wale {
@@ -18,7 +20,8 @@ namespace wale {
 ///
 /// PoCL makes machine code only when a kernel is launched, and one kernel of a process at a time. Its devices are
 /// therefore served by child processes, which build each program and launch its kernels once with zeros for arguments:
-/// that asks every kernel of Wale for nothing, and leaves its machine code in PoCL's cache.
+/// that asks every kernel of Wale for nothing, and leaves its machine code in PoCL's cache. Once they have compiled
+/// everything they leave a note there, and no child is made where it is found.
 class Rehearsal {
  public:
   /// What will be compiled for a device.
@@ -29,11 +32,15 @@ class Rehearsal {
   };
   using PlanOf = std::function<Plan(const DeviceTraits&)>;
 
-  /// `devices` as device_numbers() reads it. Forks: must come before the process's first call of OpenCL and its first
-  /// thread. What fails is left to whoever needs the program.
+  /// `devices` as device_numbers() reads it. May fork: must come before the process's first call of OpenCL and its
+  /// first thread. What fails is left to whoever needs the program.
   Rehearsal(const std::string& devices, PlanOf plan);
   /// Builds in the devices' own contexts, on threads, what the children have compiled, or what other drivers compile.
   void begin(const std::vector<Device>& devices);
+  /// True where a note said that everything is compiled already.
+  bool cached() const { return cached_; }
+  /// Waits until the children have compiled everything, or have failed.
+  void finish();
   /// Drops what has not begun. Children are killed.
   ~Rehearsal();
   Rehearsal(const Rehearsal&) = delete;
@@ -43,12 +50,15 @@ class Rehearsal {
 
  private:
   struct Shared;
+  void fork_children(const std::string& devices);
   [[noreturn]] void child(const std::string& devices, int report);
   void read_reports();
   void build_next();
 
   PlanOf plan_;
-  Shared* shared_;  ///< memory that the children see too
+  std::optional<KernelNote> note_;  ///< to be left
+  bool cached_ = false;
+  Shared* shared_ = nullptr;  ///< memory that the children see too
   std::vector<int> children_;
   int reports_ = -1;
 
@@ -57,6 +67,8 @@ class Rehearsal {
   std::vector<Part> parts_;
   std::vector<bool> compiled_;  ///< by a child
   size_t next_ = 0;
+  bool dropped_ = false;  ///< nobody waits any more
+  bool ended_ = true;     ///< no child compiles
   std::vector<std::thread> threads_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "geom/uv_grid.h"
 #include "host/stages.h"
 
 namespace wale {
@@ -49,7 +50,7 @@ Json fabric_json(const Fabric& f, const MeshReport& mesh) {
       {"flyaway_radius_m", f.flyaway_radius},
       {"mirrored", f.report.mirrored},
       {"patches", f.patches.size()},
-      {"cells", f.cell_triangles.offset.empty() ? 0 : f.cell_triangles.offset.size() - 1},
+      {"cells", cell_count(f)},
       {"vertex_bytes", f.report.vertices * W_FRAME_WORDS * 4},
   };
 }

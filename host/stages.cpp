@@ -1,5 +1,7 @@
 #include "host/stages.h"
 
+#include <algorithm>
+
 #include "shared/wale_types.h"
 
 namespace wale {
@@ -28,8 +30,9 @@ constexpr double kLeafPart = W_LEAF_HEADER * kWord + 4 * 3 * kWord + 2 * W_FRAME
 constexpr double kTriangle = 20 * kWord;
 
 // Additions and multiplications of one hit with one light sample, as `oclgrind --inst-counts` counts them (a dot
-// product as five, a fused multiply-add as two), and 20 for each of its 39 exponentials, logarithms and angles.
-constexpr double kShadePlyOperations = 1000 + 39 * 20;
+// product as five, a fused multiply-add as two), and 20 for each of its 26 exponentials, logarithms and angles
+// (kernels/shared/elementary.clh).
+constexpr double kShadePlyOperations = 1000 + 26 * 20;
 
 }  // namespace
 
@@ -50,7 +53,7 @@ std::vector<Stage> geometry_stages(const Features& f) {
            .because = "bounds of procedural leaves",
            .before_rays = true},
           {.file = "pack.cl",
-           .kernels = {"pack_leaves"},
+           .kernels = {"pack_leaves", "place_leaves"},
            .used = f.mesh_warp || f.stored_lattice,
            .because = "leaves and bounds",
            .before_rays = true}};
@@ -60,20 +63,35 @@ std::vector<Stage> wavefront_stages(const Features& f) {
   const bool surfaces = f.triangles || f.spheres;
   const double shadow = f.lights ? kShadowRay : 0, features = f.aovs ? 4 * kVec : 0;
   const double shade = kWord + 2 * kRay + 2 * kVec + kVec + kUv + kWord + shadow;
+  const std::string paths = "stages/paths.cl", trace = "stages/trace.cl";
   return {
-      {"stages/generate.cl", {"generate"}, true, "camera rays", 2 * kWord + kRay + 2 * kVec},
-      {"stages/intersect.cl", {"intersect"}, true, "nearest hits", kWord + kRay + kVec + kUv + kWord},
-      {"stages/intersect_packets.cl",
-       {"intersect_packets"},
-       f.packets(),
-       f.packets() ? "nearest hits of camera rays, many at once" : "vectors or local stage do not suit packets",
-       kWord + kRay + kVec + kUv + kWord},
-      {"stages/compact.cl", {"compact_count", "compact_scan", "compact_scatter"}, true, "queues", 5 * kWord},
-      {"stages/miss.cl",
-       {"miss"},
-       true,
-       f.environment ? "paths that leave gather the environment" : "paths that leave end",
-       2 * kWord + (f.environment ? 4 * kVec : 0)},
+      {.file = "stages/generate.cl",
+       .kernels = {"generate"},
+       .because = "camera rays",
+       .bytes_per_item = 2 * kWord + kRay + 2 * kVec,
+       .program = paths},
+      {.file = "stages/intersect.cl",
+       .kernels = {"intersect"},
+       .because = "nearest hits",
+       .bytes_per_item = kWord + kRay + kVec + kUv + kWord,
+       .program = trace},
+      {.file = "stages/intersect_packets.cl",
+       .kernels = {"intersect_packets"},
+       .used = f.packets(),
+       .because =
+           f.packets() ? "nearest hits of camera rays, many at once" : "vectors or local stage do not suit packets",
+       .bytes_per_item = kWord + kRay + kVec + kUv + kWord,
+       .can_wait = true},
+      {.file = "stages/compact.cl",
+       .kernels = {"compact_count", "compact_scan", "compact_scatter"},
+       .because = "queues",
+       .bytes_per_item = 5 * kWord,
+       .program = paths},
+      {.file = "stages/miss.cl",
+       .kernels = {"miss"},
+       .because = f.environment ? "paths that leave gather the environment" : "paths that leave end",
+       .bytes_per_item = 2 * kWord + (f.environment ? 4 * kVec : 0),
+       .program = paths},
       {"stages/shade_ply.cl",
        {"shade_ply"},
        f.plies,
@@ -90,18 +108,35 @@ std::vector<Stage> wavefront_stages(const Features& f) {
        surfaces,
        surfaces ? "props, ground or visible lights" : "no props",
        shade + 2 * kVec + kTriangle},
-      {"stages/connect.cl",
-       {"connect"},
-       f.lights,
-       f.lights ? "shadow rays" : "nothing is sampled",
-       kWord + kShadowRay + 2 * kVec},
-      {"stages/accumulate.cl", {"accumulate"}, true, "pixel sums", 3 * kVec},
+      {.file = "stages/connect.cl",
+       .kernels = {"connect"},
+       .used = f.lights,
+       .because = f.lights ? "shadow rays" : "nothing is sampled",
+       .bytes_per_item = kWord + kShadowRay + 2 * kVec,
+       .program = trace},
+      {.file = "stages/accumulate.cl",
+       .kernels = {"accumulate"},
+       .because = "pixel sums",
+       .bytes_per_item = 3 * kVec,
+       .program = paths},
       {"stages/accumulate_aov.cl",
        {"accumulate_aov"},
        f.aovs,
        f.aovs ? "feature images" : "no .exr is written",
        3 * features},
   };
+}
+
+std::vector<StageProgram> programs_of(const std::vector<Stage>& stages, bool together) {
+  std::vector<StageProgram> programs;
+  for (const Stage& stage : stages) {
+    if (!stage.used) continue;
+    const std::string& file = together && !stage.program.empty() ? stage.program : stage.file;
+    auto program = std::find_if(programs.begin(), programs.end(), [&](const auto& p) { return p.file == file; });
+    if (program == programs.end()) program = programs.insert(program, {file, {}, stage.before_rays, stage.can_wait});
+    program->kernels.insert(program->kernels.end(), stage.kernels.begin(), stage.kernels.end());
+  }
+  return programs;
 }
 
 }  // namespace wale

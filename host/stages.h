@@ -15,6 +15,8 @@ struct Stage {
   double bytes_per_item = 0;  ///< of path state, lists and stored geometry that an item reads and writes
   double operations_per_item = 0;  ///< of floats; 0: not counted
   bool before_rays = false;  ///< runs once, on the scene's geometry; has no variants
+  std::string program = {};  ///< file that includes this one and others like it, where they are compiled together
+  bool can_wait = false;     ///< another stage does its work, as well but slower, until it is compiled
 };
 
 /// What makes the scene's plies ready to be traced.
@@ -22,5 +24,16 @@ std::vector<Stage> geometry_stages(const Features& features);
 
 /// All stages in the order of a bounce; those that are not used are neither compiled nor launched.
 std::vector<Stage> wavefront_stages(const Features& features);
+
+/// What is compiled at once.
+struct StageProgram {
+  std::string file;  ///< below kernels/
+  std::vector<std::string> kernels;
+  bool before_rays = false, can_wait = false;  ///< as Stage
+};
+
+/// Programs of the stages that are used, in their order. `together`: a driver that compiles one kernel after the other
+/// is spared reading the same headers again and again; others compile each stage on a thread of its own.
+std::vector<StageProgram> programs_of(const std::vector<Stage>& stages, bool together);
 
 }  // namespace wale

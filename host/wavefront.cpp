@@ -35,6 +35,7 @@ Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Featu
       scene_(scene),
       features_(features),
       camera_(camera),
+      kernel_dir_(kernel_dir),
       pool_(std::max(64u, pool)),
       film_(device, camera.width, camera.height, features.aovs) {
   const auto vec = [&](Buffer<w_float4>& buffer, size_t count) {
@@ -57,40 +58,58 @@ Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Featu
   ints(chunk_, (pool_ / kChunk + 1) * bins());
   ints(queue_counts_, kQueueCounts);
   vec(aov_, features_.aovs ? size_t(pool_) * 4 : 0);
-  build_programs(kernel_dir);
+  build_programs();
 }
 
-void Wavefront::build_programs(const std::filesystem::path& kernel_dir) {
-  std::vector<Stage> stages = wavefront_stages(features_);
-  std::erase_if(stages, [](const Stage& stage) { return !stage.used; });
+cl_uint Wavefront::bind_path(cl::Kernel& k, cl_uint first) const {
+  set_args(k, first, ray_o_.cl(), ray_l_.cl(), ray_d_.cl(), weight_.cl(), hit_.cl(), hit_uv_.cl(), radiance_.cl(),
+           shadow_o_.cl(), shadow_l_.cl(), shadow_d_.cl(), shadow_c_.cl(), mask_.cl());
+  return first + 12;
+}
 
-  // One thread per stage, where the driver bears it: compilation is the whole of the start-up time.
+void Wavefront::bind_intersect(const char* name) { scene_.bind_scene(kernel(name), bind_path(kernel(name), 1)); }
+
+void Wavefront::take_packets() {
+  if (!waiting_ || is_being_compiled(device_, waiting_->file, features_.options(), kernel_dir_)) return;
+  const cl::Program program = build_program(device_, waiting_->file, features_.options(), kernel_dir_);
+  kernels_["intersect_packets"] = cl::Kernel(program, "intersect_packets");
+  bind_intersect("intersect_packets");
+  waiting_.reset();
+}
+
+void Wavefront::build_programs() {
+  auto programs = programs_of(wavefront_stages(features_), device_.traits().compiles_at_launch);
+  const auto wait = std::find_if(programs.begin(), programs.end(), [&](const StageProgram& program) {
+    return program.can_wait && is_being_compiled(device_, program.file, features_.options(), kernel_dir_);
+  });
+  if (wait != programs.end()) {
+    waiting_ = *wait;
+    programs.erase(wait);
+  }
+
+  // One thread per program, where the driver bears it: compilation is the whole of the start-up time.
   const auto policy = device_.traits().parallel_builds ? std::launch::async : std::launch::deferred;
   using Clock = std::chrono::steady_clock;
   std::vector<std::future<std::pair<cl::Program, double>>> builds;
-  for (const auto& stage : stages)
-    builds.push_back(std::async(policy, [&, file = stage.file] {
+  for (const auto& one : programs)
+    builds.push_back(std::async(policy, [&, file = one.file] {
       const auto start = Clock::now();
-      cl::Program program = build_program(device_, file, features_.options() + scene_.options(), kernel_dir);
+      cl::Program program = build_program(device_, file, features_.options() + scene_.options(), kernel_dir_);
       return std::pair(program, std::chrono::duration<double>(Clock::now() - start).count());
     }));
-  for (size_t i = 0; i < stages.size(); ++i) {
+  for (size_t i = 0; i < programs.size(); ++i) {
     auto [program, seconds] = builds[i].get();
-    counts_.program_seconds[stages[i].file] = seconds;
-    for (const auto& name : stages[i].kernels) kernels_[name] = cl::Kernel(program, name.c_str());
+    counts_.program_seconds[programs[i].file] = seconds;
+    for (const auto& name : programs[i].kernels) kernels_[name] = cl::Kernel(program, name.c_str());
   }
 
   // Arguments that never change are set once; `first` is the index behind WFrame.
-  const auto path = [&](cl::Kernel& k, cl_uint first) {
-    set_args(k, first, ray_o_.cl(), ray_l_.cl(), ray_d_.cl(), weight_.cl(), hit_.cl(), hit_uv_.cl(), radiance_.cl(),
-             shadow_o_.cl(), shadow_l_.cl(), shadow_d_.cl(), shadow_c_.cl(), mask_.cl());
-    return first + 12;
-  };
+  const auto path = [&](cl::Kernel& k, cl_uint first) { return bind_path(k, first); };
   auto& generate = kernel("generate");
   generate.setArg(1, camera_);
   set_args(generate, path(generate, 2), spare_list_.cl(), queue_counts_.cl());
   for (const char* name : {"intersect", "intersect_packets"})
-    if (kernels_.contains(name)) scene_.bind_scene(kernel(name), path(kernel(name), 1));
+    if (kernels_.contains(name)) bind_intersect(name);
   auto& miss = kernel("miss");
   cl_uint next = scene_.bind_lights(miss, path(miss, 1));
   set_args(miss, next, aov_.cl(), miss_list_.cl(), queue_counts_.cl(), kHits + 2);
@@ -175,6 +194,7 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
   frame.samples_before = first_sample;
   frame.samples_in_wave = samples;
   frame.paths = pixels * samples;
+  take_packets();
   set_frame(frame);
   const bool recording = record_ && waves_ % record_->every == 0;
   ++waves_;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "host/film_device.h"
 #include "host/ray_batch.h"
 #include "host/scene_device.h"
+#include "host/stages.h"
 #include "host/wave_counts.h"
 
 namespace wale {
@@ -51,10 +53,15 @@ class Wavefront {
   // Places of the queue lengths in queue_counts_.
   static constexpr uint32_t kGenerated = 0, kHits = 1, kShaded[2] = {5, 9}, kQueueCounts = 13;
 
-  void build_programs(const std::filesystem::path& kernel_dir);
+  void build_programs();
+  /// Sets the arguments of W_PATH_PARAMS from `first` on; returns the next free index.
+  cl_uint bind_path(cl::Kernel& kernel, cl_uint first) const;
+  void bind_intersect(const char* name);
+  /// Packets are used from the first wave on that finds them compiled; they find the same hits.
+  void take_packets();
   cl::Kernel& kernel(const std::string& name) { return kernels_.at(name); }
   void launch(const std::string& name, size_t items, bool camera_rays = false);
-  bool in_packets(uint32_t depth) const { return depth == 0 && features_.packets(); }
+  bool in_packets(uint32_t depth) const { return depth == 0 && kernels_.contains("intersect_packets"); }
   /// Kernel that finds the nearest hits at this depth.
   const char* nearest(uint32_t depth) const { return in_packets(depth) ? "intersect_packets" : "intersect"; }
   void launch_intersect(const Buffer<uint32_t>& list, uint32_t count_index, uint32_t depth, size_t bound);
@@ -70,6 +77,8 @@ class Wavefront {
   const SceneDevice& scene_;
   Features features_;
   WCamera camera_;
+  std::filesystem::path kernel_dir_;
+  std::optional<StageProgram> waiting_;  ///< that of packets, while it is being compiled
   uint32_t pool_;
   uint64_t bytes_ = 0;
   std::map<std::string, cl::Kernel> kernels_;

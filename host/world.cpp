@@ -1,19 +1,15 @@
 #include "host/world.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <bit>
 #include <chrono>
 #include <cmath>
 
 #include "geom/error.h"
-#include "geom/lattice_fabric.h"
-#include "geom/mesh_repair.h"
+#include "host/knit_fabrics.h"
 #include "host/materials.h"
 #include "host/placement.h"
 #include "host/ply_colors.h"
-#include "host/storage.h"
 #include "host/viewpoint.h"
 
 namespace wale {
@@ -63,60 +59,25 @@ class Builder {
     world_.seconds[name] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 
-  // Colours that vary are stored per vertex; the cell stages list stored segments.
-  std::string lattice_obstacle_of_scene() const {
-    if (scene_.integrator.local_stage != "exact") return "integrator.local_stage is not \"exact\"";
-    for (const auto& fabric : scene_.fabrics)
-      if (colors_vary(scene_.materials.at(size_t(fabric.material)).yarn, fabric.color_image))
-        return fmt::format("colours vary over fabric \"{}\"", fabric.spec.name);
-    return {};
-  }
-
-  void note_lattice(const Fabric& fabric, const StorageChoice& choice) {
-    double change = 0;
-    for (const LatticeChart& chart : fabric.lattice)
-      for (const TileYarn& yarn : chart.tile.yarns) change = std::max(change, std::abs(yarn.twist_change));
-    world_.notes.push_back(
-        fmt::format("fabric \"{}\": held as a lattice of {} cell(s) along a tile's side, {} ({}); its twist changes by "
-                    "{:.3g} turns "
-                    "per metre so that tiles join",
-                    fabric.name, fabric.lattice[0].lattice.cells,
-                    choice.storage == Storage::procedural ? "points warped where needed" : "points stored",
-                    choice.because, change));
-  }
-
   void knit_all() {
-    const std::string obstacle = lattice_obstacle_of_scene();
-    for (const auto& fabric : scene_.fabrics) {
-      BaseMesh mesh = load_mesh(fabric.mesh, loaders_);
-      require_uv(mesh);
-      if (const size_t joined = join_duplicate_vertices(mesh))
-        world_.notes.push_back(fmt::format("fabric \"{}\": {} vertices in the place of another one are joined to it",
-                                           fabric.spec.name, joined));
-      transform_mesh(mesh, fabric.transform);
-      refuse_if_out_of_reach(mesh, fabric.spec.name);
-      const Pattern pattern = load_pattern(fabric.pattern);
+    std::vector<KnittedFabric> knitted = knit_fabrics(scene_, loaders_, [&](double done) {
+      if (progress_) progress_("knit", done);
+    });
+    for (size_t f = 0; f < knitted.size(); ++f) {
+      const FabricScene& fabric = scene_.fabrics[f];
       const PlyAppearance& yarn = scene_.materials.at(size_t(fabric.material)).yarn;
-      FabricSpec spec = fabric.spec;
-      spec.fibres = fibre_recipe(yarn);
-      spec.places = colors_need_places(yarn, fabric.color_image);
-      const StorageChoice choice = choose_storage(mesh, pattern, spec, obstacle);
-      spec.storage = choice.storage;
-      refuse_if_too_large(mesh, pattern, spec);
-      world_.fabric_mesh_reports.push_back(validate(mesh));
-      part_opposed_seams(mesh);
-      bounds_.add(mesh), fabric_bounds_.add(mesh);
-      world_.fabrics.push_back(choice.lattice ? knit_lattice(std::move(mesh), pattern, spec)
-                                              : knit_fabric(std::move(mesh), pattern, spec));
-      if (choice.lattice) note_lattice(world_.fabrics.back(), choice);
+      world_.notes.insert(world_.notes.end(), knitted[f].notes.begin(), knitted[f].notes.end());
+      world_.fabric_mesh_reports.push_back(knitted[f].mesh_report);
+      world_.fabrics.push_back(std::move(knitted[f].fabric));
+      Fabric& made = world_.fabrics.back();
+      bounds_.add(made.mesh), fabric_bounds_.add(made.mesh);
       world_.fabric_material.push_back(uint32_t(world_.ply_materials.size()));
       world_.ply_materials.push_back(ply_material(yarn));
-      world_.fibres.add(spec.fibres, world_.fabrics.back().ply_radius, spec.detail);
-      const bool fibres = world_.fabrics.back().report.fibres > 0;
+      world_.fibres.add(fibre_recipe(yarn), made.ply_radius, fabric.spec.detail);
+      const bool fibres = made.report.fibres > 0;
       world_.fabric_fibre_material.push_back(fibres ? uint32_t(world_.fibre_materials.size()) : W_NONE);
       if (fibres) world_.fibre_materials.push_back(fibre_material(yarn));
-      color_plies(world_.fabrics.back(), yarn, fabric.color_image);
-      if (progress_) progress_("knit", double(world_.fabrics.size()) / double(scene_.fabrics.size()));
+      color_plies(made, yarn, fabric.color_image);
     }
   }
 
@@ -133,20 +94,6 @@ class Builder {
     world_.ply_colors.insert(world_.ply_colors.end(), words.begin(), words.end());
     world_.colored_fabrics.push_back(fabric.name);
     fabric.place = {};
-  }
-
-  // A segment takes 16 bytes of frame and about 25 in leaves and nodes on the device, and 12 of position and 32 of
-  // anchor until its leaf is packed; the host holds it once more while it knits.
-  static void refuse_if_too_large(const BaseMesh& mesh, const Pattern& pattern, const FabricSpec& spec) {
-    // A procedural one keeps a few bytes; its boxes and its tree take some forty while they are built.
-    const double bytes = spec.storage == Storage::procedural ? 48 : 16 + 25 + 12 + 32 + 160;
-    const double segments = double(estimate_segments(mesh, pattern, spec));
-    const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
-    if (segments * bytes > 0.8 * memory)
-      user_error(
-          "fabric \"{}\": about {:.3g} ply segments would need {:.3g} GB, this machine has {:.3g} GB; use fewer "
-          "repeats, a coarser gauge or a larger tolerance",
-          spec.name, segments, segments * bytes * 1e-9, memory * 1e-9);
   }
 
   int add_material(const SurfaceAppearance& look) {

@@ -20,7 +20,7 @@ __kernel void lattice_boxes(__global const uint* leaves, __global const float* l
   __global const uint* patch = tiles + (leaves[i] & ((1u << patch_bits) - 1u)) * W_PATCH_WORDS;
   __global const float* corner = lattice + (size_t)(leaves[i] >> patch_bits) * W_LATTICE_WORDS;
   const uint layout = patch[W_LEAF_LAYOUT], n = layout & 255u, lanes = (layout >> 8) & 255u;
-  const uint open = patch[W_LEAF_ENDS];
+  const uint open = patch[W_PATCH_ENDS];
   Points point;
   clear_points(&point);
   for (uint at = 0; at < W_PATCH_POINTS; at += W_LANES)

@@ -81,15 +81,27 @@ __kernel void pack_leaves(__global const uint4* runs, __global const float* posi
   vstore3(box.hi, 2 * (size_t)i + 1, boxes);
 }
 
-/* Packs again and writes each leaf's box where the tree holds it: places are 16 * node + slot. Widened as by
-   build_wide_tree. */
+/* Tells the leaves of one buffer, with numbers from `base` to before `end`, where the tree of `count` nodes holds them.
+   Procedural leaves have no word for it. */
+__kernel void place_leaves(__global const uint* nodes, __global uint* leaves, uint base, uint end, uint count) {
+  const uint place = get_global_id(0), node = place / W_NODE_WIDTH;
+  if (node >= count) return;
+  const uint code = nodes[(size_t)node * W_NODE_WORDS + W_NODE_CHILD + place % W_NODE_WIDTH];
+  const uint number = code & ~W_CHILD_LEAF;
+  if (code == W_NONE || !(code & W_CHILD_LEAF) || number < base || number >= end) return;
+  leaves[((size_t)(number - base) << 2) + W_LEAF_PLACE] = place;
+}
+
+/* Packs again and writes each leaf's box where the tree holds it. Widened as by build_wide_tree. */
 __kernel void refit_leaves(__global const uint4* runs, __global const float* positions, __global uint* leaves,
-                           uint base, uint first, uint count, __global const uint* places, __global float* nodes) {
+                           uint base, uint first, uint count, __global float* nodes) {
   const uint i = first + get_global_id(0);
   if (i - first >= count) return;
-  const Bounds box = pack_leaf(run_in_buffer(runs, i, base), positions, leaves);
+  const uint4 run = run_in_buffer(runs, i, base);
+  const Bounds box = pack_leaf(run, positions, leaves);
   const float3 lo = box.lo - (fabs(box.lo) * 4.8e-7f + 1e-30f), hi = box.hi + (fabs(box.hi) * 4.8e-7f + 1e-30f);
-  __global float* f = nodes + (size_t)(places[i] / W_NODE_WIDTH) * W_NODE_WORDS + places[i] % W_NODE_WIDTH;
+  const uint place = leaves[((size_t)run.x << 2) + W_LEAF_PLACE];
+  __global float* f = nodes + (size_t)(place / W_NODE_WIDTH) * W_NODE_WORDS + place % W_NODE_WIDTH;
   f[0] = lo.x;
   f[16] = lo.y;
   f[32] = lo.z;
@@ -100,11 +112,11 @@ __kernel void refit_leaves(__global const uint4* runs, __global const float* pos
 
 /* Nodes [first, first + count) of one level write their bounds where their parents hold them; below them all is done.
    Empty children do not count: their boxes are inside out. */
-__kernel void refit_nodes(__global const uint* parents, __global float* nodes, uint first, uint count) {
+__kernel void refit_nodes(__global float* nodes, uint first, uint count) {
   const uint i = get_global_id(0);
   if (i >= count) return;
   __global const float* f = nodes + (size_t)(first + i) * W_NODE_WORDS;
-  const uint place = parents[first + i];
+  const uint place = as_uint(f[W_NODE_PLACE]);
   __global float* out = nodes + (size_t)(place / W_NODE_WIDTH) * W_NODE_WORDS + place % W_NODE_WIDTH;
   for (uint side = 0; side < 6; ++side, f += W_NODE_WIDTH, out += W_NODE_WIDTH) {
     float m = f[0];

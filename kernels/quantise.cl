@@ -34,7 +34,7 @@ __kernel void quantise_nodes(__global const uint* nodes, __global const uint* fi
   __global uint* out = quantised + (size_t)i * W_QUANTISED_WORDS;
   uint slots = 0, first_node = 0, leaf = first_leaf[i];
   for (uint slot = 0; slot < W_NODE_WIDTH; ++slot) {
-    const uint code = node[96 + slot];
+    const uint code = node[W_NODE_CHILD + slot];
     if (code == W_NONE) continue;
     slots |= 1u << slot;
     if (!(code & W_CHILD_LEAF)) {

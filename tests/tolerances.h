@@ -9,6 +9,7 @@ constexpr double kBsdfDouble = 1e-6;     // double build: the Bessel polynomials
 constexpr double kFurnace = 2e-6;        // sum of energies of white plies: float rounding alone
 constexpr double kEnergyDouble = 1e-12;  // same formulas, other order
 constexpr double kPdfIntegral = 1e-3;    // midpoint grid of 384 x 384 over the sphere
+constexpr double kElementary = 3e-7;     // polynomials of shared/elementary.clh: two or three roundings of 2^-24
 constexpr double kCoatTable = 2e-3;      // coarser integration than the table's, and its 5 digits
 constexpr double kSurfaceFloat = 1e-3;   // float against double: D of the sharpest coat, alpha 0.0025
 constexpr double kSurfaceFurnace = 0.01;

@@ -20,11 +20,14 @@ typedef int32_t w_int;
 #define W_NONE 0xffffffffu
 
 /* --- tree ---------------------------------------------------------------------------------------------------------
-   Node: 7 arrays of 16 words: lo x,y,z, hi x,y,z (floats; empty children have lo = +1e30, hi = -1e30), child code.
+   Node: 7 arrays of 16 words: lo x,y,z, hi x,y,z (floats; empty children have lo = +1e30, hi = -1e30), child code;
+   then its own place, 16 * parent + slot there (W_NONE: the root), and words not used.
    Child code: W_NONE empty; W_CHILD_LEAF | offset of the leaf in 16-byte units; else node index, with
    W_CHILD_CELL set where that node is the root of one UV cell. */
 #define W_NODE_WIDTH 16
-#define W_NODE_WORDS 112
+#define W_NODE_WORDS 128
+#define W_NODE_CHILD 96
+#define W_NODE_PLACE 112
 #define W_CHILD_LEAF 0x80000000u
 #define W_CHILD_CELL 0x40000000u
 #define W_CHILD_INDEX 0x3fffffffu
@@ -63,20 +66,20 @@ typedef int32_t w_int;
 #define W_LEAF_TAU 7      /* float, effective optical radius of the ply: pass-through exp(-2 tau cos gamma) */
 #define W_LEAF_CELL 8     /* UV cell that owns the patch (global number) */
 #define W_LEAF_FABRIC 9
-#define W_LEAF_ENDS 10 /* bit 0: the first segment starts at an open end of the yarn; bit 1: the last one ends there \
-                        */
+#define W_LEAF_PLACE 10 /* where the tree holds it: 16 * node + slot */
 #define W_LEAF_PLY 11  /* number of the run's first ply, over all fabrics */
 /* Hit code of a ply segment: leaf offset (16-byte units) << 4 | lane. */
 
 /* --- procedural leaf: no points are kept -----------------------------------------------------------------------------
    Leaf number W_LEAF_PROCEDURAL | v << patch bits | patch: v is the lattice vertex at the corner of a tile, `patch` an
    entry of the tile tables. A lattice vertex is P x,y,z, N x,y,z. An entry is W_PATCH_WORDS words: first a leaf's header,
-   of which SEGMENT and PLY hold for tile (0,0), then what follows. The leaf's points are
+   of which SEGMENT and PLY hold for tile (0,0) and PLACE means W_PATCH_ENDS, then what follows. The leaf's points are
      x_i = sum over controls c of rows[c][0][i] P_c + rows[c][1][i] N_c,
    control c being lattice vertex v + controls[c], rows of W_PATCH_POINTS floats at multiples of 64 bytes. */
 #define W_LEAF_PROCEDURAL 0x08000000u
 #define W_LATTICE_WORDS 6
 #define W_PATCH_WORDS 32
+#define W_PATCH_ENDS 10 /* bit 0: the first segment starts at an open end of the yarn; bit 1: the last one ends there */
 #define W_PATCH_POINTS 32
 #define W_PATCH_CONTROLS 12 /* word of the first of its control offsets (int, lattice words) */
 #define W_PATCH_CONTROL_COUNT 13

@@ -3,6 +3,10 @@
 #include "stages/path_hit.clh"
 #include "stages/scene_args.clh"
 
+W_CALL void w_meet_packet(const WScene* scene, const WRay* rays, uint count, WPacket* packet) {
+  w_closest_packet(scene, rays, count, packet);
+}
+
 __kernel void intersect_packets(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, __global const uint* list,
                                 __global const uint* counts, uint count_index, uint depth) {
   const uint first = get_global_id(0) * W_LANES, end = counts[count_index];
@@ -12,7 +16,7 @@ __kernel void intersect_packets(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, __g
   WRay rays[W_LANES];
   for (uint i = 0; i < count; ++i) rays[i] = w_path_ray(&frame, ray_o, ray_l, ray_d, list[first + i], depth);
   WPacket packet;
-  w_closest_packet(&scene, rays, count, &packet);
+  w_meet_packet(&scene, rays, count, &packet);
   for (uint i = 0; i < count; ++i) {
     const WHit h = w_packet_hit(&packet, i);
     W_STORE_HIT(&scene, list[first + i], h)

@@ -7,6 +7,7 @@
 #include "lights.clh"
 #include "sampling/dimensions.clh"
 #include "sampling/sobol.clh"
+#include "stages/ask_ahead.clh"
 #include "stages/continue_path.clh"
 #include "stages/light_args.clh"
 #include "stages/load_hit.clh"
@@ -14,56 +15,50 @@
 #include "stages/scene_args.clh"
 #include "stages/store_rays.clh"
 
-__kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PARAMS, __global const float* frames,
-                          __global const WFibreMaterial* materials,
 #ifdef W_HAS_PLY_COLORS
-                          __global const uint* colors,
+#define W_COLOR_PARAMS __global const uint *colors,
+#define W_COLOR_ARGS colors,
+#else
+#define W_COLOR_PARAMS
+#define W_COLOR_ARGS
 #endif
-                          __global float4* aov, __global const uint* list,
-                          __global const uint* counts, uint count_index, uint depth) {
-  const uint i = get_global_id(0);
-  if (i >= counts[count_index]) return;
-  const uint slot = list[i];
-  if (w_last_ray(&frame, depth)) {
-    mask[slot] = 0u;
-    return;
-  }
-  const WScene scene = W_SCENE;
 
+W_CALL void w_shade_fibre(const WFrame* frame, W_PATH_PARAMS, const WScene* scene, const WLights* lights,
+                          __global const float* frames, __global const WFibreMaterial* materials,
+                          W_COLOR_PARAMS __global float4* aov, uint slot, uint depth) {
   const WRay ray = w_slot_ray(ray_o, ray_l, ray_d, slot);
   const WHit h = w_slot_hit(hit, hit_uv, slot);
-  const WPlySurface s = w_ply_surface(&scene, frames, &ray, &h);
+  const WPlySurface s = w_ply_surface(scene, frames, &ray, &h);
   WFibreMaterial material = materials[s.material & ~W_MATERIAL_FIBRE];
 #ifdef W_HAS_PLY_COLORS
   if (colors[s.segment] & W_COLOR_GIVEN)
-    material.transmit.xyz = w_ply_color(colors[s.segment]) * (material.transmit.w != 0.0f ? material.transmit.xyz : 1.0f);
+    material.transmit.xyz =
+        w_ply_color(colors[s.segment]) * (material.transmit.w != 0.0f ? material.transmit.xyz : 1.0f);
 #endif
   const WFibreShade shade = w_fibre_setup(material, s.smooth_t, s.smooth_n, -ray.d);
   const float3 axis = s.u * s.edge;
 
   // Within the rounding of the lobes' energies, 2e-6.
-  if (w_max3(shade.a[0] + shade.a[1]) > 1.00001f) atomic_inc(events + W_EVENT_ENERGY);
+  if (w_max3(shade.a[0] + shade.a[1]) > 1.00001f) atomic_inc(scene->counters + W_EVENT_ENERGY);
 
 #ifdef W_AOVS
   if (depth == 0)
-    W_STORE_FEATURES(slot, shade.a[0] + shade.a[1], h.t, s.smooth_n, s.phi, s.smooth_t, s.length,
-                     s.anchor + s.x, s.ply)
+    W_STORE_FEATURES(slot, shade.a[0] + shade.a[1], h.t, s.smooth_n, s.phi, s.smooth_t, s.length, s.anchor + s.x, s.ply)
 #endif
 
-  const WSampler sampler = w_sampler(w_slot_pixel(&frame, slot), w_slot_sample(&frame, slot), frame.seed);
+  const WSampler sampler = w_sampler(w_slot_pixel(frame, slot), w_slot_sample(frame, slot), frame->seed);
   const float4 u = w_sample4(&sampler, W_SET_SCATTER(depth));
   float left;
   const int lobe = w_fibre_choose(&shade, u.x, &left);
 
   uint bins = 0u;
 #ifdef W_HAS_LIGHTS
-  if (frame.light_sampling != 2) {
-    const WLights lights = W_LIGHTS;
-    const WLightSample l = w_light_sample(&lights, s.anchor + axis, w_sample4(&sampler, W_SET_LIGHT(depth)));
+  if (frame->light_sampling != 2) {
+    const WLightSample l = w_light_sample(lights, s.anchor + axis, w_sample4(&sampler, W_SET_LIGHT(depth)));
     if (l.pdf > 0.0f) {
       float p;
       const float3 f = w_fibre_eval(&shade, l.direction, &p);
-      const float share = frame.light_sampling == 0 ? w_mis(l.pdf, p) : 1.0f;
+      const float share = frame->light_sampling == 0 ? w_mis(l.pdf, p) : 1.0f;
       const float3 c = weight[slot].xyz * f * l.radiance * (share / l.pdf);
       if (w_max3(c) > 0.0f) {
         bins |= W_BIN_SHADOW;
@@ -78,7 +73,24 @@ __kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_P
   const float3 f = w_fibre_eval(&shade, w, &density);
   // A direction whose density has underflowed was drawn from the far tail of its lobe: the lobe's own weight is exact.
   float3 next = weight[slot].xyz * (density > 1e-20f ? f / density : shade.a[lobe] / shade.q[lobe]);
-  bins |= w_continue(&frame, &next, depth, &sampler);
+  bins |= w_continue(frame, &next, depth, &sampler);
   W_STORE_PATH_RAY(slot, s.anchor, axis, h.code, W_NONE, w, density, next)
   mask[slot] = bins;
+}
+
+__kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PARAMS, __global const float* frames,
+                          __global const WFibreMaterial* materials, W_COLOR_PARAMS __global float4* aov,
+                          __global const uint* list, __global const uint* counts, uint count_index, uint depth) {
+  const uint i = get_global_id(0);
+  const uint count = counts[count_index];
+  if (i >= count) return;
+  const uint slot = list[i];
+  if (w_last_ray(&frame, depth)) {
+    mask[slot] = 0u;
+    return;
+  }
+  const WScene scene = W_SCENE;
+  w_ask_for_hits(&scene, frames, list, hit, i, count);
+  const WLights lights = W_LIGHTS;
+  w_shade_fibre(&frame, W_PATH_ARGS, &scene, &lights, frames, materials, W_COLOR_ARGS aov, slot, depth);
 }

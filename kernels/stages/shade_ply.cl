@@ -1,5 +1,5 @@
-/* A path meets a ply (KNIT21 section 3.3): connect it to a light, go on along a lobe of the ply BSDF. A direction on the
-   outer side of the surface leaves at the hit; any other one leaves from the middle of the chord through the ply
+/* A path meets a ply (KNIT21 section 3.3): connect it to a light, go on along a lobe of the ply BSDF. A direction on
+   the outer side of the surface leaves at the hit; any other one leaves from the middle of the chord through the ply
    (docs/appearance.md), and meets whatever lies ahead, its own segment excepted. */
 #include "appearance/ply_bsdf.clh"
 #include "appearance/ply_color.clh"
@@ -7,6 +7,7 @@
 #include "lights.clh"
 #include "sampling/dimensions.clh"
 #include "sampling/sobol.clh"
+#include "stages/ask_ahead.clh"
 #include "stages/continue_path.clh"
 #include "stages/light_args.clh"
 #include "stages/load_hit.clh"
@@ -21,35 +22,30 @@ static inline float3 w_leave(const WPlySurface* s, float3 out, float3 middle, fl
 
 #ifdef W_HAS_PLY_COLORS
 #define W_COLOR_PARAMS __global const uint *colors,
+#define W_COLOR_ARGS colors,
 #define W_COLORED(material, segment) w_ply_colored(material, colors[segment])
 #else
 #define W_COLOR_PARAMS
+#define W_COLOR_ARGS
 #define W_COLORED(material, segment) material
 #endif
 
-__kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PARAMS, __global const float* frames,
-                        __global const WPlyMaterial* materials,
 #ifdef W_HAS_DETAIL
-                        __global const WFibreDetail* details, __global const uint* fibre_offsets,
-                        __global const float4* fibre_candidates, float2 pixel_width,
-#endif
-                        W_COLOR_PARAMS __global float4* aov, __global const uint* list,
-                        __global const uint* counts, uint count_index, uint depth) {
-  const uint i = get_global_id(0);
-  if (i >= counts[count_index]) return;
-  const uint slot = list[i];
-  if (w_last_ray(&frame, depth)) {
-    mask[slot] = 0u;
-    return;
-  }
-  const WScene scene = W_SCENE;
-#ifdef W_HAS_LIGHTS
-  const WLights lights = W_LIGHTS;
+#define W_DETAIL_PARAMS                                                                                              \
+  __global const WFibreDetail *details, __global const uint *fibre_offsets, __global const float4 *fibre_candidates, \
+      float2 pixel_width,
+#define W_DETAIL_ARGS details, fibre_offsets, fibre_candidates, pixel_width,
+#else
+#define W_DETAIL_PARAMS
+#define W_DETAIL_ARGS
 #endif
 
+W_CALL void w_shade_ply(const WFrame* frame, W_PATH_PARAMS, const WScene* scene, const WLights* lights,
+                        __global const float* frames, __global const WPlyMaterial* materials,
+                        W_DETAIL_PARAMS W_COLOR_PARAMS __global float4* aov, uint slot, uint depth) {
   const WRay ray = w_slot_ray(ray_o, ray_l, ray_d, slot);
   const WHit h = w_slot_hit(hit, hit_uv, slot);
-  const WPlySurface s = w_ply_surface(&scene, frames, &ray, &h);
+  const WPlySurface s = w_ply_surface(scene, frames, &ray, &h);
   const float3 wv = -ray.d;
   const WPlyMaterial material = W_COLORED(materials[s.material], s.segment);
   WFibreAt fibre = w_fibre_mean(material.tilt);
@@ -70,7 +66,7 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
   const WPlyShade shade = w_ply_setup_detail(material, s.smooth_t, s.smooth_n, wv, fibre);
 
   // Within the rounding of the lobes' energies, 2e-6.
-  if (w_max3(shade.a[0] + shade.a[1] + shade.a[2]) > 1.00001f) atomic_inc(events + W_EVENT_ENERGY);
+  if (w_max3(shade.a[0] + shade.a[1] + shade.a[2]) > 1.00001f) atomic_inc(scene->counters + W_EVENT_ENERGY);
 
 #ifdef W_AOVS
   if (depth == 0)
@@ -78,7 +74,7 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
                      s.anchor + s.x, s.ply)
 #endif
 
-  const WSampler sampler = w_sampler(w_slot_pixel(&frame, slot), w_slot_sample(&frame, slot), frame.seed);
+  const WSampler sampler = w_sampler(w_slot_pixel(frame, slot), w_slot_sample(frame, slot), frame->seed);
   const float4 u = w_sample4(&sampler, W_SET_SCATTER(depth));
   float left;
   const int lobe = w_ply_choose(&shade, u.x, &left);
@@ -90,13 +86,13 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
 
   uint bins = 0u;
 #ifdef W_HAS_LIGHTS
-  if (frame.light_sampling != 2) {
+  if (frame->light_sampling != 2) {
     // One light sample seen from each of the two places a direction may leave from. Each counts only on its own side;
     // where both do (a thin set), one is taken at random and counts twice.
     const float4 ul = w_sample4(&sampler, W_SET_LIGHT(depth));
-    const WLightSample a = w_light_sample(&lights, s.anchor + out, ul);
+    const WLightSample a = w_light_sample(lights, s.anchor + out, ul);
     WLightSample b = a;
-    if (a.distance < 1e29f) b = w_light_sample(&lights, s.anchor + middle, ul);  // nearer lights show a parallax
+    if (a.distance < 1e29f) b = w_light_sample(lights, s.anchor + middle, ul);  // nearer lights show a parallax
     const int a_ok = a.pdf > 0.0f && dot(a.direction, s.n) > 0.0f;
     const int b_ok = b.pdf > 0.0f && !(dot(b.direction, s.n) > 0.0f);
     if (a_ok || b_ok) {
@@ -105,7 +101,7 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
       const float twice = a_ok && b_ok ? 2.0f : 1.0f;
       float p;
       const float3 f = w_ply_eval(&shade, l.direction, &p);
-      const float share = frame.light_sampling == 0 ? w_mis(l.pdf, p) : 1.0f;
+      const float share = frame->light_sampling == 0 ? w_mis(l.pdf, p) : 1.0f;
       const float3 c = weight[slot].xyz * f * l.radiance * (twice * share / l.pdf);
       if (w_max3(c) > 0.0f) {
         bins |= W_BIN_SHADOW;
@@ -120,7 +116,24 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
   const float3 f = w_ply_eval(&shade, w, &density);
   // A direction whose density has underflowed was drawn from the far tail of its lobe: the lobe's own weight is exact.
   float3 next = weight[slot].xyz * (density > 1e-20f ? f / density : shade.a[lobe] / shade.q[lobe]);
-  bins |= w_continue(&frame, &next, depth, &sampler);
+  bins |= w_continue(frame, &next, depth, &sampler);
   W_STORE_PATH_RAY(slot, s.anchor, w_leave(&s, out, middle, w), h.code, W_NONE, w, density, next)
   mask[slot] = bins;
+}
+
+__kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PARAMS, __global const float* frames,
+                        __global const WPlyMaterial* materials, W_DETAIL_PARAMS W_COLOR_PARAMS __global float4* aov,
+                        __global const uint* list, __global const uint* counts, uint count_index, uint depth) {
+  const uint i = get_global_id(0);
+  const uint count = counts[count_index];
+  if (i >= count) return;
+  const uint slot = list[i];
+  if (w_last_ray(&frame, depth)) {
+    mask[slot] = 0u;
+    return;
+  }
+  const WScene scene = W_SCENE;
+  w_ask_for_hits(&scene, frames, list, hit, i, count);
+  const WLights lights = W_LIGHTS;
+  w_shade_ply(&frame, W_PATH_ARGS, &scene, &lights, frames, materials, W_DETAIL_ARGS W_COLOR_ARGS aov, slot, depth);
 }

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <numbers>
 #include <set>
+#include <tuple>
 
 #include "geom/base_mesh_generators.h"
 #include "geom/error.h"
@@ -289,6 +290,53 @@ TEST(Fabric, TwoRunsAreIdentical) {
   EXPECT_EQ(std::memcmp(a.patches.data(), b.patches.data(), a.patches.size() * sizeof(Patch)), 0);
   EXPECT_EQ(a.cell_segments.item, b.cell_segments.item);
   EXPECT_EQ(a.cell_triangles.item, b.cell_triangles.item);
+}
+
+TEST(Fabric, ThreadsChangeNothing) {
+  FabricSpec plain = metric_spec(), places = metric_spec(), hairy = metric_spec(), fibres = metric_spec();
+  places.places = true;
+  hairy.flyaways.hairs = hairy.flyaways.loops = 500;
+  fibres.detail = Detail::fibres;
+  fibres.fibres.fibres = 6;
+  for (const FabricSpec& spec : {plain, places, hairy, fibres})
+    for (const BaseMesh& mesh : {make_tube(0.01, 0.008, 48, 12), make_pillow(0.03, 0.02, 0.01, 8, 8)}) {
+      const Fabric a = knit_fabric(mesh, stockinette_pattern(), spec, 1);
+      const Fabric b = knit_fabric(mesh, stockinette_pattern(), spec, 5);
+      ASSERT_GT(a.report.full_yarns, 5u) << "of several yarns";
+      ASSERT_EQ(a.anchors.size(), b.anchors.size());
+      EXPECT_EQ(std::memcmp(a.anchors.data(), b.anchors.data(), a.anchors.size() * sizeof(Anchor)), 0);
+      ASSERT_EQ(a.place.size(), b.place.size());
+      if (spec.places) EXPECT_EQ(std::memcmp(&a.place[0], &b.place[0], a.place.size() * sizeof(StrandPlace)), 0);
+      ASSERT_EQ(a.runs.size(), b.runs.size());
+      for (size_t r = 0; r < a.runs.size(); ++r) {
+        const auto all = [](const PlyRun& run) {
+          return std::tuple(run.first_vertex, run.count, run.plies, run.kind, run.radius, run.yarn, run.chart, run.ply,
+                            run.first_place, run.one_place, run.ghost_ends);
+        };
+        ASSERT_EQ(all(a.runs[r]), all(b.runs[r])) << "run " << r;
+      }
+      ASSERT_EQ(a.patches.size(), b.patches.size());
+      EXPECT_EQ(std::memcmp(a.patches.data(), b.patches.data(), a.patches.size() * sizeof(Patch)), 0);
+      EXPECT_EQ(a.cell_segments.item, b.cell_segments.item);
+      EXPECT_EQ(a.report.full_yarns, b.report.full_yarns);
+      EXPECT_EQ(a.report.flyaways, b.report.flyaways);
+      EXPECT_EQ(a.report.samples_outside, b.report.samples_outside);
+      EXPECT_EQ(a.report.samples_extrapolated, b.report.samples_extrapolated);
+      EXPECT_EQ(a.report.jumps_cut, b.report.jumps_cut);
+    }
+}
+
+TEST(Fabric, ListsOfCellsAreMadeWhereTheyAreAskedFor) {
+  FabricSpec spec = metric_spec();
+  const Fabric with = tube(0.01);
+  spec.cell_lists = false;
+  const Fabric without = knit_fabric(make_tube(0.01, 0.01, 48, 12), stockinette_pattern(), spec);
+  EXPECT_GT(with.cell_segments.item.size(), 0u);
+  EXPECT_EQ(with.cell_segments.offset.size(), cell_count(with) + 1);
+  EXPECT_TRUE(without.cell_segments.offset.empty() && without.cell_triangles.offset.empty());
+  EXPECT_EQ(cell_count(without), cell_count(with));
+  ASSERT_EQ(with.patches.size(), without.patches.size());
+  EXPECT_EQ(std::memcmp(with.patches.data(), without.patches.data(), with.patches.size() * sizeof(Patch)), 0);
 }
 
 TEST(Fabric, RepeatsAndGaugeGiveTheSizesTheyName) {

@@ -93,7 +93,8 @@ std::string lost_cells(const World& world) {
     for (dvec2& uv : t) uv -= tiles;
   FabricSpec spec;
   spec.scale.kind = FabricScale::Kind::uv_metres;
-  const size_t far = lost_by_cells(world.fabrics[0]), here = lost_by_cells(knit_fabric(near, pattern, spec));
+  const size_t far = lost_by_cells(knit_fabric(world.fabrics[0].mesh, pattern, spec)),
+               here = lost_by_cells(knit_fabric(near, pattern, spec));
   return expect(double(far) < 1.02 * double(here) + 5, fmt::format("cells lose {} hits, {} near 0", far, here));
 }
 

@@ -34,7 +34,7 @@ static inline Lobe ply_lobe(const WPlyShade* s, int lobe) {
   f.x = surface ? s->xf : s->x;
   f.y = surface ? s->yf : s->y;
   f.theta = surface ? -atan2(s->sin_vf, s->cos_vf) : -atan2(s->sin_v, s->cos_v);
-  f.phi = surface ? s->phi_n : lobe == W_LOBE_F ? s->center_f : s->center_b;
+  f.phi = surface ? atan2(s->sin_n, s->cos_n) : lobe == W_LOBE_F ? s->center_f : s->center_b;
   return f;
 }
 __kernel void ply_samples(__global const WPlyMaterial* m, __global const float* view, __global const float* u, int lobe,

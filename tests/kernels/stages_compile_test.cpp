@@ -28,7 +28,8 @@ INSTANTIATE_TEST_SUITE_P(All, StagesCompile,
                          testing::Values("stages/generate.cl", "stages/intersect.cl", "stages/miss.cl",
                                          "stages/shade_ply.cl", "stages/shade_fibre.cl", "stages/shade_surface.cl",
                                          "stages/connect.cl", "stages/compact.cl", "stages/accumulate.cl",
-                                         "stages/accumulate_aov.cl"));
+                                         "stages/accumulate_aov.cl", "stages/intersect_packets.cl", "stages/paths.cl",
+                                         "stages/trace.cl"));
 
 }  // namespace
 }  // namespace wale

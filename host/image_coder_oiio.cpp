@@ -1,0 +1,65 @@
+// The only file that knows OpenImageIO; a library of its own, see host/image_coder.h.
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "host/image_coder.h"
+
+namespace wale {
+namespace {
+
+template <typename File>
+std::string reason(const File& file) {
+  const std::string text = file ? file->geterror() : OIIO::geterror();
+  return text.empty() ? "unknown reason" : text;
+}
+
+std::string decode(std::string_view bytes, const std::string& format, const std::string& file,
+                   const std::function<void(const ImageHeader&)>& accept, Image& image) {
+  const auto input = OIIO::ImageInput::create(format);
+  OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size());
+  OIIO::ImageSpec spec, how;
+  how.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are stored: alpha must not darken them
+  if (!input || !input->set_ioproxy(&memory) || !input->open(file, spec, how)) return reason(input);
+  const std::string space = spec.get_string_attribute("oiio:ColorSpace", "sRGB");
+  std::vector<std::string> channels = spec.channelnames;
+  channels.resize(size_t(std::max(0, spec.nchannels)));
+  accept({spec.width, spec.height, channels, spec.alpha_channel, spec.deep,
+          !spec.format.is_floating_point() && !OIIO::Strutil::iequals(space, "linear")});
+  image = {spec.width, spec.height, std::move(channels), {}};
+  image.pixels.resize(size_t(spec.width) * size_t(spec.height) * size_t(spec.nchannels));
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data())) return reason(input);
+  return {};
+}
+
+std::string encode_png(const std::vector<unsigned char>& rgb, int width, int height, std::string& png) {
+  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  OIIO::Filesystem::IOVecOutput memory;
+  const auto output = OIIO::ImageOutput::create("png");
+  if (!output || !output->set_ioproxy(&memory) || !output->open("memory.png", spec) ||
+      !output->write_image(spec.format, rgb.data()) || !output->close())
+    return reason(output);
+  png.assign(memory.buffer().begin(), memory.buffer().end());
+  return {};
+}
+
+std::string write_exr(const Image& image, const std::string& file) {
+  OIIO::ImageSpec spec(image.width, image.height, int(image.channels.size()), OIIO::TypeDesc::FLOAT);
+  spec.channelnames = image.channels;
+  spec.attribute("compression", "zip");
+  const auto output = OIIO::ImageOutput::create(file);
+  if (!output || !output->open(file, spec) || !output->write_image(spec.format, image.pixels.data()) ||
+      !output->close())
+    return reason(output);
+  return {};
+}
+
+constexpr ImageCoder kCoder{decode, encode_png, write_exr};
+
+}  // namespace
+}  // namespace wale
+
+extern "C" const wale::ImageCoder* wale_image_coder() { return &wale::kCoder; }

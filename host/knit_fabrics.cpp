@@ -1,0 +1,114 @@
+#include "host/knit_fabrics.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <mutex>
+#include <numeric>
+#include <thread>
+
+#include "geom/error.h"
+#include "geom/lattice_fabric.h"
+#include "geom/mesh_repair.h"
+#include "geom/run_tasks.h"
+#include "host/features.h"
+#include "host/materials.h"
+#include "host/placement.h"
+#include "host/ply_colors.h"
+#include "host/storage.h"
+
+namespace wale {
+namespace {
+
+// Colours that vary are stored per vertex; the cell stages list stored segments.
+std::string lattice_obstacle_of_scene(const Scene& scene) {
+  if (scene.integrator.local_stage != "exact") return "integrator.local_stage is not \"exact\"";
+  for (const auto& fabric : scene.fabrics)
+    if (colors_vary(scene.materials.at(size_t(fabric.material)).yarn, fabric.color_image))
+      return fmt::format("colours vary over fabric \"{}\"", fabric.spec.name);
+  return {};
+}
+
+std::string lattice_note(const Fabric& fabric, const StorageChoice& choice) {
+  double change = 0;
+  for (const LatticeChart& chart : fabric.lattice)
+    for (const TileYarn& yarn : chart.tile.yarns) change = std::max(change, std::abs(yarn.twist_change));
+  return fmt::format(
+      "fabric \"{}\": held as a lattice of {} cell(s) along a tile's side, {} ({}); its twist changes by {:.3g} turns "
+      "per metre so that tiles join",
+      fabric.name, fabric.lattice[0].lattice.cells,
+      choice.storage == Storage::procedural ? "points warped where needed" : "points stored", choice.because, change);
+}
+
+// A segment takes 16 bytes of frame and about 25 in leaves and nodes on the device, and 12 of position and 32 of
+// anchor until its leaf is packed; the host holds it once more while it knits.
+void refuse_if_too_large(const BaseMesh& mesh, const Pattern& pattern, const FabricSpec& spec) {
+  // A procedural one keeps a few bytes; its boxes and its tree take some forty while they are built.
+  const double bytes = spec.storage == Storage::procedural ? 48 : 16 + 25 + 12 + 32 + 160;
+  const double segments = double(estimate_segments(mesh, pattern, spec));
+  const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+  if (segments * bytes > 0.8 * memory)
+    user_error(
+        "fabric \"{}\": about {:.3g} ply segments would need {:.3g} GB, this machine has {:.3g} GB; use fewer "
+        "repeats, a coarser gauge or a larger tolerance",
+        spec.name, segments, segments * bytes * 1e-9, memory * 1e-9);
+}
+
+void knit(const Scene& scene, const FabricScene& fabric, const std::string& obstacle, BaseMesh mesh,
+          KnittedFabric& out) {
+  require_uv(mesh);
+  if (const size_t joined = join_duplicate_vertices(mesh))
+    out.notes.push_back(fmt::format("fabric \"{}\": {} vertices in the place of another one are joined to it",
+                                    fabric.spec.name, joined));
+  transform_mesh(mesh, fabric.transform);
+  refuse_if_out_of_reach(mesh, fabric.spec.name);
+  const Pattern pattern = load_pattern(fabric.pattern);
+  const PlyAppearance& yarn = scene.materials.at(size_t(fabric.material)).yarn;
+  FabricSpec spec = fabric.spec;
+  spec.fibres = fibre_recipe(yarn);
+  spec.places = colors_need_places(yarn, fabric.color_image);
+  spec.cell_lists = local_stage(scene.integrator) != LocalStage::exact;
+  const StorageChoice choice = choose_storage(mesh, pattern, spec, obstacle);
+  spec.storage = choice.storage;
+  refuse_if_too_large(mesh, pattern, spec);
+  out.mesh_report = validate(mesh);
+  part_opposed_seams(mesh);
+  out.fabric =
+      choice.lattice ? knit_lattice(std::move(mesh), pattern, spec) : knit_fabric(std::move(mesh), pattern, spec);
+  if (choice.lattice) out.notes.push_back(lattice_note(out.fabric, choice));
+}
+
+}  // namespace
+
+std::vector<KnittedFabric> knit_fabrics(const Scene& scene, const Loaders& loaders,
+                                        const std::function<void(double)>& progress) {
+  const std::string obstacle = lattice_obstacle_of_scene(scene);
+  const size_t count = scene.fabrics.size();
+  // One after the other: readers of meshes keep a state.
+  std::vector<BaseMesh> meshes;
+  for (const FabricScene& fabric : scene.fabrics) meshes.push_back(load_mesh(fabric.mesh, loaders));
+  std::vector<KnittedFabric> out(count);
+  std::vector<std::exception_ptr> failed(count);
+  std::mutex mutex;
+  size_t done = 0;
+  std::vector<size_t> numbers(count);  // taken from the back
+  std::iota(numbers.rbegin(), numbers.rend(), size_t(0));
+  // Parts of knitting that have one thread only then fill each other's gaps.
+  const auto threads = unsigned(std::min<size_t>(count, std::max(1u, std::thread::hardware_concurrency())));
+  run_tasks(threads, std::move(numbers), [&](size_t i, const auto&) {
+    try {
+      knit(scene, scene.fabrics[i], obstacle, std::move(meshes[i]), out[i]);
+    } catch (...) {
+      failed[i] = std::current_exception();
+    }
+    const std::lock_guard lock(mutex);
+    progress(double(++done) / double(count));
+  });
+  for (const auto& failure : failed)
+    if (failure) std::rethrow_exception(failure);
+  return out;
+}
+
+}  // namespace wale
