@@ -56,8 +56,8 @@ Held hold(const BaseMesh& mesh, const Pattern& pattern, FabricSpec spec, Storage
       "{:.0f} "
       "MB\n",
       storage == Storage::stored ? "stored" : "procedural", f.segment_count, f.patch_count,
-      double(f.tree.nodes.bytes() + f.lattice.bytes() * (storage == Storage::procedural) + f.tree.leaves.bytes()) / n,
-      double(f.tree.nodes.bytes()) / n, double(f.lattice.bytes()) / n, double(f.tree.leaves.bytes()) / n,
+      double(f.tree.tree_bytes() + f.lattice.bytes() * (storage == Storage::procedural) + f.tree.leaves.bytes()) / n,
+      double(f.tree.tree_bytes()) / n, double(f.lattice.bytes()) / n, double(f.tree.leaves.bytes()) / n,
       double(f.frames.bytes()) / n, held.knit_seconds, held.upload_seconds, f.warp_seconds, f.pack_seconds,
       f.build_seconds, double(usage.ru_maxrss) / 1024);
   return held;
