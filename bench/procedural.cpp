@@ -47,7 +47,7 @@ std::unique_ptr<FabricTracer> hold(const BaseMesh& mesh, const Pattern& pattern,
   const bench::Seconds uploaded = upload.seconds();
   const FabricDevice& f = tracer->fabric();
   const double n = double(f.segment_count), lattice = double(f.lattice.bytes()) / n;
-  const double nodes = double(f.tree.nodes.bytes()) / n, leaves = double(f.tree.leaves.bytes()) / n;
+  const double nodes = double(f.tree.tree_bytes()) / n, leaves = double(f.tree.leaves.bytes()) / n;
   const double trace = nodes + leaves + lattice * (storage == Storage::procedural);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

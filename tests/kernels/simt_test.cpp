@@ -149,7 +149,7 @@ TEST(Quantised, NodesHoldTheExactBoxesAndLittleMore) {
       const uint32_t slots = node[W_QUANTISED_SLOTS];
       uint32_t next_node = node[W_QUANTISED_FIRST_NODE], next_leaf = node[W_QUANTISED_FIRST_LEAF];
       for (int slot = 0; slot < W_NODE_WIDTH; ++slot) {
-        const uint32_t code = from[96 + slot];
+        const uint32_t code = from[W_NODE_CHILD + slot];
         ASSERT_EQ(slots >> slot & 1, code != W_NONE);
         if (code == W_NONE) continue;
         const bool leaf = code & W_CHILD_LEAF;
