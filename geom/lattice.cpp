@@ -32,7 +32,7 @@ std::string lattice_obstacle(const BaseMesh& mesh, const Chart& chart) {
 }
 
 Lattice sample_lattice(const BaseMesh& mesh, const Chart& chart, dvec2 origin, dvec2 tile_uv, ivec2 tiles, ivec2 wrap,
-                       int cells, ivec2 reach_lo, ivec2 reach_hi) {
+                       int cells, ivec2 reach_lo, ivec2 reach_hi, size_t most) {
   Lattice lattice;
   lattice.tiles = tiles;
   lattice.wrap = wrap;
@@ -40,6 +40,11 @@ Lattice sample_lattice(const BaseMesh& mesh, const Chart& chart, dvec2 origin, d
   lattice.margin = glm::max(-reach_lo, ivec2(0));
   lattice.size = lattice.margin + (tiles - 1) * cells + reach_hi + 2;
   const size_t count = size_t(lattice.size.x) * size_t(lattice.size.y);
+  if (count > most)
+    user_error(
+        "fabric: {} x {} tiles of {} x {} lattice cells are {:.3g} vertices, more than the {:.3g} that can be "
+        "numbered; use fewer repeats, a smaller \"lattice\" or storage \"stored\" without one",
+        tiles.x, tiles.y, cells, cells, double(count), double(most));
   lattice.position.resize(count);
   lattice.normal.resize(count);
   const ChartLocator locator(mesh, chart);

@@ -35,8 +35,8 @@ struct LatticeChart {
 std::string lattice_obstacle(const BaseMesh& mesh, const Chart& chart);
 
 /// Samples the mesh at the corners of `tiles` x `cells` cells from `origin` on, tile_uv a tile, and `reach_lo` to
-/// `reach_hi` cells of one tile past its corners.
+/// `reach_hi` cells of one tile past its corners. Throws a user error when that makes more than `most` vertices.
 Lattice sample_lattice(const BaseMesh& mesh, const Chart& chart, dvec2 origin, dvec2 tile_uv, ivec2 tiles, ivec2 wrap,
-                       int cells, ivec2 reach_lo, ivec2 reach_hi);
+                       int cells, ivec2 reach_lo, ivec2 reach_hi, size_t most);
 
 }  // namespace wale

@@ -1,10 +1,12 @@
 #include "geom/lattice_fabric.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "geom/error.h"
 #include "geom/fabric_map.h"
+#include "shared/wale_types.h"
 
 namespace wale {
 
@@ -54,8 +56,14 @@ Fabric knit_lattice(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spe
     const dvec3 scale(tile / pattern.period, chart_map.scale.z);
     LatticeChart made;
     made.tile = knit_tile(pattern, partners, map.yarn, scale, cells, spec.height_offset);
-    made.lattice =
-        sample_lattice(fabric.mesh, chart, origin, tile_uv, tiles, wrap, cells, made.tile.reach_lo, made.tile.reach_hi);
+    // A leaf number holds a vertex and a patch of the tile (wale_types.h).
+    size_t patches = 0;
+    for (const TileYarn& yarn : made.tile.yarns) {
+      const uint32_t most = W_LEAF_LANES / uint32_t(spec.plies);
+      patches += (yarn.samples + most - 1) / most;
+    }
+    made.lattice = sample_lattice(fabric.mesh, chart, origin, tile_uv, tiles, wrap, cells, made.tile.reach_lo,
+                                  made.tile.reach_hi, W_LEAF_PROCEDURAL / std::bit_ceil(std::max<size_t>(patches, 1)));
     for (const TileYarn& yarn : made.tile.yarns) {
       const size_t lines = size_t(tiles[1 - yarn.axis]), along = size_t(tiles[yarn.axis]);
       report.full_yarns += lines;

@@ -7,6 +7,7 @@
 #include "geom/error.h"
 #include "host/atomic_file.h"
 #include "host/commands.h"
+#include "host/image_coder.h"
 #include "host/memory_needs.h"
 #include "host/progress.h"
 #include "host/rare_events.h"
@@ -176,8 +177,14 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   options.ready = catch_stop_signals;  // before the first ray there is nothing to keep
   devices.upload(world, scene.integrator, options);
   start.step("warp and tree");
+  if (const uint32_t tight = devices.list().front().scene->fabric().tight_joints; tight > 0 && !args.quiet)
+    fmt::print(stderr, "note: {} joints bend too tightly to be warped where rays meet them: their fabrics are stored\n",
+               tight);
   Progress bar("render", args.quiet);
-  const Rendered r = render(devices.list(), world, scene.integrator, options, [&](double f) { bar.update(f); });
+  const Rendered r = render(devices.list(), world, scene.integrator, options, [&](double f) {
+    if (!args.outputs.empty()) image_coder();  // if it cannot be loaded, now rather than when all is rendered
+    bar.update(f);
+  });
   bar.finish(r.stopped ? "stopped early" : "");
   start.step("programs", r.program_seconds);
   start.step("first wave", r.first_sample_seconds);

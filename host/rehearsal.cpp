@@ -100,7 +100,7 @@ static std::string what_is_compiled(const std::string& devices, const Rehearsal:
   some_device.lanes = 16;
   some_device.compiles_at_launch = true;
   std::string all = devices;
-  for (const char* name : {"POCL_DEVICES", "WALE_KERNEL_OPTIONS"})
+  for (const char* name : {"POCL_DEVICES", "WALE_KERNEL_OPTIONS", "WALE_TRAVERSAL"})
     if (const char* value = std::getenv(name)) all += fmt::format("\n{}={}", name, value);
   const Rehearsal::Plan plan = plan_of(some_device);
   for (const StageProgram& program : programs_of(plan.stages, some_device.compiles_at_launch))

@@ -37,6 +37,7 @@ Json fabric_json(const Fabric& f, const MeshReport& mesh) {
       {"fibres", f.report.fibres},
       {"flyaways", f.report.flyaways},
       {"segments", f.report.segments},
+      {"storage", f.procedural ? "procedural" : "stored"},
       {"vertices", f.report.vertices},
       {"samples_outside", f.report.samples_outside},
       {"samples_extrapolated", f.report.samples_extrapolated},
@@ -111,8 +112,9 @@ std::string build_report_text(const World& world, const std::vector<TextileMeasu
       out += fmt::format("  cover      {:.1f} % of the flat cloth, openness {:.1f} %\n", 100 * t.cover,
                          100 * (1 - t.cover));
     }
-    out += fmt::format("  knitted    {} full yarns, {} runs, {} segments, {} vertices ({} bytes each)\n", r.full_yarns,
-                       r.runs, r.segments, r.vertices, W_FRAME_WORDS * 4);
+    out += fmt::format("  knitted    {} full yarns, {} runs, {} segments, ", r.full_yarns, r.runs, r.segments);
+    out += f.procedural ? "warped from a lattice wherever rays meet them\n"
+                        : fmt::format("{} vertices ({} bytes each)\n", r.vertices, W_FRAME_WORDS * 4);
     if (r.fibres > r.flyaways)
       out += fmt::format("  fibres     {} curves of radius {:.4f} mm\n", r.fibres - r.flyaways, 1e3 * f.fibre_radius);
     if (r.flyaways)

@@ -22,9 +22,10 @@ W_INLINE float3 vertex(const Ply* ply, int i) {
                : stored(ply, 3) + (stored(ply, last) - stored(ply, 2));
 }
 
-/* run: number of the leaf in its buffer (16-byte units), first vertex of the run's ply 0, vertices per ply, 1 if the run has ghost ends. The
-   host has written the leaf's header but for CUTS and SPHERES. Returns the leaf's box. What happens at a joint follows
-   from the vertices two before to two after it only, so that every leaf that meets the joint decides alike. */
+/* run: number of the leaf in its buffer (16-byte units), first vertex of the run's ply 0, vertices per ply, 1 if the run
+   has ghost ends. The host has written the leaf's header but for CUTS and SPHERES. Returns the leaf's box. What happens
+   at a joint follows from the vertices two before to two after it only, so that every leaf that meets the joint decides
+   alike. */
 W_INLINE Bounds pack_leaf(uint4 run, __global const float* positions, __global uint* leaves) {
   __global uint* leaf = leaves + ((size_t)run.x << 2);
   const uint layout = leaf[W_LEAF_LAYOUT], n = layout & 255u, lanes = (layout >> 8) & 255u, stride = layout >> 16;
@@ -81,8 +82,8 @@ __kernel void pack_leaves(__global const uint4* runs, __global const float* posi
   vstore3(box.hi, 2 * (size_t)i + 1, boxes);
 }
 
-/* Tells the leaves of one buffer, of numbers `base` to `base + numbers`, where the tree holds them; procedural leaves have
-   no word for it. */
+/* Tells the leaves of one buffer, of numbers `base` to `base + numbers`, where the tree holds them; procedural leaves
+   have no word for it. */
 __kernel void place_leaves(__global const uint* nodes, __global uint* leaves, uint base, uint numbers, uint count) {
   const uint place = get_global_id(0), node = place / W_NODE_WIDTH;
   if (node >= count) return;

@@ -28,6 +28,8 @@ def figures(data, rows):
 def table(data):
     rows = {name: figures(data, done) for name, runs in data["rows"].items()
             if len(done := [r for r in runs if r["one"] and r["all"]]) > 1}
+    if "wale" not in rows:
+        sys.exit(f"{data['scene']}: needs two finished repetitions of wale, which the others are compared with")
     wale, paths = rows["wale"], data["size"] ** 2 * data["spp"]
     print(f"\n### {data['scene']}, {data['size']} x {data['size']}, {data['spp']} samples, depth {data['depth']}\n")
     print("| | us a path | variance | of blocks | **equal noise** | blocks | wall | start | picture | GB | mean |")
