@@ -146,6 +146,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
     aovs |= output.extension() == ".exr";
   }
   if (!args.stats.empty()) require_writable_path(args.stats);
+  const auto named = named_devices(args.device);
   start.step("read the scene");
   // Programs are compiled while the scene is knitted.
   Rehearsal rehearsal(args.device, [&](const DeviceTraits& traits) {
@@ -154,13 +155,16 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
     for (auto& stage : wavefront_stages(features)) stages.push_back(std::move(stage));
     return Rehearsal::Plan{stages, features.options(), args.kernel_dir};
   });
-  // So are the devices opened: their drivers bring large libraries.
-  std::future<World> knitted = std::async(std::launch::async, [&] {
+  const auto knit = [&] {
     Progress bar("knit", args.quiet);
     World made = build_world(scene, loaders, [&](const std::string&, double fraction) { bar.update(fraction); });
     bar.finish();
     return made;
-  });
+  };
+  // So are the devices opened: their drivers bring large libraries. Devices that there may not be come first: a long
+  // knit cannot be left.
+  const bool sure = !named || *named == std::vector<unsigned>{0};
+  std::future<World> knitted = std::async(sure ? std::launch::async : std::launch::deferred, knit);
   Devices devices(args.device);
   rehearsal.begin(devices.open());
   start.step("open devices");

@@ -25,14 +25,6 @@ World world_of(const Scene& scene, const Loaders& loaders, bool quiet) {
   return world;
 }
 
-Device one_device(const SceneArgs& args) {
-  const auto numbers = device_numbers(args.device);
-  if (numbers.size() > 1)
-    user_error("--device {}: only a render uses several devices; give one number, for example --device {}", args.device,
-               numbers.front());
-  return Device::open(numbers.front());
-}
-
 void require_json_path(const std::filesystem::path& file) {
   if (!file.empty() && file != "-") require_writable_path(file);
 }
@@ -70,7 +62,7 @@ int run_build(const SceneArgs& args, const std::filesystem::path& json, const Lo
 int run_plan(const SceneArgs& args, const std::filesystem::path& json, const Loaders& loaders) {
   require_json_path(json);
   const Scene scene = read_scene(args.scene, args.set);
-  const Device device = one_device(args);
+  const Device device = Device::open(one_device_number(args.device));
   const World world = world_of(scene, loaders, args.quiet);
   const SceneDevice on_device(device, world, local_stage(scene.integrator));
   const Features features = analyse(world, scene.integrator, true, device.traits());
@@ -90,7 +82,7 @@ int run_export(const SceneArgs& args, const std::filesystem::path& output, const
           fabric.spec.name);
     fabric.spec.storage = Storage::stored;
   }
-  const Device device = one_device(args);
+  const Device device = Device::open(one_device_number(args.device));
   const World world = world_of(scene, loaders, args.quiet);
   const std::vector<float> points = FabricWarp(device, fabric_inputs(world), world.origin).points().read(device);
   std::vector<ExportCurve> curves;

@@ -99,13 +99,9 @@ std::vector<DeviceTraits> Device::list() {
   return traits;
 }
 
-std::vector<unsigned> device_numbers(const std::string& text) {
+std::optional<std::vector<unsigned>> named_devices(const std::string& text) {
+  if (text == "all") return {};
   std::vector<unsigned> numbers;
-  if (text == "all") {
-    numbers.resize(require_devices().size());
-    std::iota(numbers.begin(), numbers.end(), 0u);
-    return numbers;
-  }
   for (const char *at = text.data(), *end = at + text.size();; ++at) {
     unsigned number = 0;
     const auto [next, error] = std::from_chars(at, end, number);
@@ -117,6 +113,21 @@ std::vector<unsigned> device_numbers(const std::string& text) {
     if (next == end) return numbers;
     at = next;
   }
+}
+
+std::vector<unsigned> device_numbers(const std::string& text) {
+  if (const auto named = named_devices(text)) return *named;
+  std::vector<unsigned> numbers(require_devices().size());
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  return numbers;
+}
+
+unsigned one_device_number(const std::string& text) {
+  const auto numbers = device_numbers(text);
+  if (numbers.size() > 1)
+    user_error("--device {}: only a render uses several devices; give one number, for example --device {}", text,
+               numbers.front());
+  return numbers.front();
 }
 
 Device Device::open(unsigned index) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,9 +38,13 @@ struct ProgramCache {
   std::map<std::string, std::shared_future<void>> ahead;  ///< what a Rehearsal compiles or has compiled
 };
 
-/// Numbers of the devices that `--device` names: "all", or numbers of Device::list() with commas between them. Throws a
+/// What `--device` says, before any driver is loaded: numbers with commas between them; nothing for "all". Throws a
 /// user error for anything else and for a device named twice.
+std::optional<std::vector<unsigned>> named_devices(const std::string& text);
+/// The same as numbers of Device::list(), all of them for "all"; whether there are such devices shows when they open.
 std::vector<unsigned> device_numbers(const std::string& text);
+/// The same for commands that use one device; throws a user error when more are named.
+unsigned one_device_number(const std::string& text);
 
 /// An OpenCL device with its context and one in-order queue. Passed explicitly, never global.
 class Device {

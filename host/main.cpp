@@ -33,10 +33,13 @@ void add_scene_options(CLI::App& command, SceneArgs& args) {
   command.add_option("SCENE", args.scene, "scene file")->required();
   command.add_option("--set", args.set, "change a key of the scene: key.path=value (repeatable)")
       ->allow_extra_args(false);
-  command.add_option("--device", args.device,
-                     "OpenCL device (see `wale devices`): its number; for a render also several, 0,2, or all");
-  command.add_option("--kernel-dir", args.kernel_dir, "read kernels from this folder instead of the built-in ones");
   command.add_flag("--quiet", args.quiet, "no progress");
+}
+
+// Of commands that use a device.
+void add_device_options(CLI::App& command, SceneArgs& args, const std::string& device) {
+  command.add_option("--device", args.device, "OpenCL device (see `wale devices`): " + device);
+  command.add_option("--kernel-dir", args.kernel_dir, "read kernels from this folder instead of the built-in ones");
 }
 
 // What CLI11 could not place, with the nearest valid word.
@@ -69,6 +72,7 @@ int run(int argc, char** argv) {
   RenderArgs render;
   auto* c = app.add_subcommand("render", "render a scene to images (.exr with features, .png)");
   add_scene_options(*c, render);
+  add_device_options(*c, render, "its number, several with commas between them, or all");
   c->add_option("-o,--output", render.outputs, "image to write (repeatable)")->required()->allow_extra_args(false);
   c->add_option("--spp", render.spp, "samples per pixel")->check(CLI::Range(1, 1 << 24));
   c->add_option("--seconds", render.seconds, "stop after this many seconds")->check(finite_number(false));
@@ -85,10 +89,12 @@ int run(int argc, char** argv) {
   c->callback([&] { status = wale::run_build(scene, json, loaders); });
   c = app.add_subcommand("plan", "say what will be simulated and why");
   add_scene_options(*c, scene);
+  add_device_options(*c, scene, "its number");
   c->add_option("--json", json, "write the plan as JSON (- for the terminal)");
   c->callback([&] { status = wale::run_plan(scene, json, loaders); });
   c = app.add_subcommand("export", "write the ply curves: .obj, .pbrt, .txt (Mitsuba), .usda");
   add_scene_options(*c, scene);
+  add_device_options(*c, scene, "its number");
   c->add_option("-o,--output", output, "file to write")->required();
   c->callback([&] { status = wale::run_export(scene, output, loaders); });
   c = app.add_subcommand("compare", "compare two images");

@@ -43,6 +43,10 @@ constexpr double kGrazingShare = 1e-3;     // rays within 1e-3 of a silhouette, 
 // Statistics: a family of tests fails by chance once in a hundred times, and the seeds are fixed.
 constexpr double kFamilyP = 0.01;
 
+// Of a tile's standard error, between drivers and with the same seed: as if 16 of its 512 paths had gone elsewhere. One
+// such path moves its pixel by half a standard error and the tile's mean by 1/16 of one; 16 at random by 4/16.
+constexpr double kShareOfNoise = 0.25;
+
 // Seconds of processor time that a reader may take for any file of up to 64 KiB: what a user does not notice.
 constexpr double kReaderSeconds = 1;
 

@@ -56,7 +56,7 @@ int run_bench(const BenchArgs& args, const Loaders& loaders) {
   if (args.scene.empty() && !args.set.empty()) user_error("--set {}: needs --scene", args.set.front());
   for (const auto& file : {args.json, args.csv, args.reference})
     if (!file.empty() && file != "-") require_writable_path(file);
-  const Device device = Device::open(args.device);
+  const Device device = Device::open(one_device_number(args.device));
   if (!args.reference.empty()) {
     write(args.reference, reference_source(render_picture(device, kReferenceSamples, kReferenceSeed, args.kernel_dir),
                                            device.traits().name));

@@ -13,8 +13,8 @@ struct BenchArgs {
   std::filesystem::path scene;
   std::vector<std::string> set;
   int repeats = 5;
-  uint64_t rays = 0;  ///< camera rays of sizes and scenes; 0: as many as fill the device
-  unsigned device = 0;
+  uint64_t rays = 0;         ///< camera rays of sizes and scenes; 0: as many as fill the device
+  std::string device = "0";  ///< as one_device_number() reads it
   std::filesystem::path json, csv, kernel_dir;
   std::filesystem::path reference;  ///< writes the frozen workload's picture there instead
   bool quiet = false;

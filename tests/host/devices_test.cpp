@@ -32,8 +32,12 @@ TEST_F(CliDevices, NumbersThatAreNone) {
     EXPECT_TRUE(contains(refused(render(text), 1, {kTwo}), "expected a number, numbers with commas")) << text;
   EXPECT_TRUE(contains(refused(render("0,1,0"), 1, {kTwo}), "--device 0,1,0: device 0 is named twice"));
   EXPECT_TRUE(contains(refused(render("0,7"), 1, {kTwo}), "--device 7: there is no such device; valid: 0 to 1"));
-  EXPECT_TRUE(contains(refused({"plan", scene_, "--device", "all"}, 1, {kTwo}),
-                       "--device all: only a render uses several devices; give one number, for example --device 0"));
+  EXPECT_FALSE(contains(run_wale(render("7"), {kTwo}).err, "knit")) << "nobody waits for a knit in vain";
+  const std::string only = "--device all: only a render uses several devices; give one number, for example --device 0";
+  EXPECT_TRUE(contains(refused({"plan", scene_, "--device", "all"}, 1, {kTwo}), only));
+  EXPECT_TRUE(contains(refused({"bench", "--device", "all"}, 1, {kTwo}), only));
+  EXPECT_TRUE(contains(refused({"bench", "--device", "one"}, 1, {kTwo}), "--device one: expected a number"));
+  EXPECT_TRUE(contains(refused({"build", scene_, "--device", "all"}), "--device: no such option of `wale build`"));
 }
 
 TEST_F(CliDevices, TraversalsThatAreNone) {
