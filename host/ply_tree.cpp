@@ -132,7 +132,8 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
     for (const PlyPatch& patch : patches) cells.push_back(patch.cell);
   const WideTree wide = build_wide_tree(boxes, tree.leaf_offset, cells, group_box);
   tree.nodes = in_large_pages(device, wide.words);
-  if (!patches.empty() && device.traits().traversal == Traversal::lanes)  // others start at the root
+  // Read by rays that go up from their own leaf, and by refit.
+  if (!patches.empty() && (device.traits().traversal == Traversal::lanes || updatable))
     place_leaves(device, uint32_t(wide.nodes()), tree);
   tree.node_cell = Buffer<uint32_t>(device, group_box.empty() ? std::vector<uint32_t>{} : wide.node_cell);
   if (updatable) tree.refit = std::make_unique<PlyRefit>(device, runs, positions, wide, tree);

@@ -53,7 +53,7 @@ TEST(Drivers, OclgrindGivesTheSamePicture) {
                                 shorter, "--set", coarser, "--set", "integrator.seed=1"},
                                environment, 300);
   ASSERT_EQ(run.status, 0) << run.err;
-  const Image image = read_image(picture);
+  const Image image = means_and_variances(picture);
   const Scene same_scene = read_scene(scene, {shorter, coarser});
 
   // The same seed, hence the same paths: what is left is the rounding of another compiler's code.

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
+
+#include "geom/error.h"
 
 namespace wale::test {
 std::string everything_scene(int size, double wales) {
@@ -37,6 +40,19 @@ size_t different_pixels(const Image& a, const Image& b) {
   for (size_t i = 0; i < pixels; ++i)
     differ += std::memcmp(a.pixels.data() + i * stride, b.pixels.data() + i * stride, stride * sizeof(float)) != 0;
   return differ;
+}
+
+Image means_and_variances(const std::filesystem::path& file) {
+  const Image all = read_image(file);
+  Image out{all.width, all.height, {"R", "G", "B", "variance.R", "variance.G", "variance.B"}, {}};
+  for (int y = 0; y < all.height; ++y)
+    for (int x = 0; x < all.width; ++x)
+      for (const auto& name : out.channels) {
+        const auto found = std::find(all.channels.begin(), all.channels.end(), name);
+        if (found == all.channels.end()) bug("{}: no channel {}", file.string(), name);
+        out.pixels.push_back(all.at(x, y)[found - all.channels.begin()]);
+      }
+  return out;
 }
 
 }  // namespace wale::test

@@ -17,4 +17,7 @@ std::filesystem::path oclgrind();
 /// Pixels in which any channel differs in any bit; all of them when the pictures do not have the same shape.
 size_t different_pixels(const Image& a, const Image& b);
 
+/// A picture read back with the means and their variances first, as they leave the film; a file's order is its own.
+Image means_and_variances(const std::filesystem::path& file);
+
 }  // namespace wale::test

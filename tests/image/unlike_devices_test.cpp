@@ -52,20 +52,6 @@ std::optional<int> number_of(const std::string& name, const std::string& list) {
   return number;
 }
 
-/// A picture read back with the means and their variances first, as they leave the film; a file's order is its own.
-Image means_and_variances(const std::filesystem::path& file) {
-  const Image all = read_image(file);
-  Image out{all.width, all.height, {"R", "G", "B", "variance.R", "variance.G", "variance.B"}, {}};
-  for (int y = 0; y < all.height; ++y)
-    for (int x = 0; x < all.width; ++x)
-      for (const auto& name : out.channels) {
-        const auto found = std::find(all.channels.begin(), all.channels.end(), name);
-        if (found == all.channels.end()) bug("{}: no channel {}", file.string(), name);
-        out.pixels.push_back(all.at(x, y)[found - all.channels.begin()]);
-      }
-  return out;
-}
-
 TEST(UnlikeDevices, ShareOnePicture) {
   if (oclgrind().empty()) GTEST_SKIP() << "Oclgrind is not installed (apt-get install oclgrind)";
   const TemporaryFolder folder, vendors;
