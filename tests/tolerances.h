@@ -50,6 +50,9 @@ constexpr double kShareOfNoise = 0.25;
 // Seconds of processor time that a reader may take for any file of up to 64 KiB: what a user does not notice.
 constexpr double kReaderSeconds = 1;
 
+// Device memory of a segment of three-ply yarn, bytes: to trace it, to shade it too, and to trace it from a lattice.
+constexpr double kBytesToTrace = 30, kBytesToShade = 48, kProceduralBytes = 4;
+
 // Stored leaves against their estimate (host/memory_needs.h): some hold fewer intervals than others of their yarn.
 constexpr double kLeafBytes = 0.1;
 

@@ -191,7 +191,11 @@ Result compare(Tracer& tracer, const Peer& peer, const Kind& kind, const std::st
   return out;
 }
 
-void print_hits(const Kind& kind, const std::vector<Hit>& found, const std::vector<float>& embree) {
+/// Least share of rays for which both agree whether they hit, in percent: fewer, and the speeds are not of one task.
+constexpr double kAgreement = 99.9;
+
+/// Prints them; false when too few agree.
+bool print_hits(const Kind& kind, const std::vector<Hit>& found, const std::vector<float>& embree) {
   size_t agree = 0, ours = 0, theirs = 0;
   for (size_t i = 0; i < found.size(); ++i) {
     const bool a = kind.any ? found[i].occluded != 0 : found[i].kind != W_HIT_NONE, b = embree[i] < 1e29f;
@@ -204,6 +208,7 @@ void print_hits(const Kind& kind, const std::vector<Hit>& found, const std::vect
     fmt::print("| {}, stopped | {:.3f} % | {:.3f} % | |\n", kind.name, share * double(ours), share * double(theirs));
   else
     fmt::print("| {}, hit or miss agrees | {:.3f} % | | |\n", kind.name, share * double(agree));
+  return kind.attenuated || share * double(agree) >= kAgreement;
 }
 
 }  // namespace
@@ -240,6 +245,7 @@ int main(int argc, char** argv) {
   // As the renderer sends them, where the device's vectors are wide enough.
   if (device.traits().lanes == W_NODE_WIDTH)
     kinds.insert(kinds.begin(), {"primary", &rays.primary, "closest_packets", false, false});
+  bool agree = true;
   for (const Kind& kind : kinds) {
     Tracer& against = kind.attenuated ? attenuated : tracer;
     const Result r = compare(against, peer, kind, options, repetitions);
@@ -250,6 +256,7 @@ int main(int argc, char** argv) {
                theirs, median(r.ratio), *least, *most, median(r.wall_ratio));
     for (const auto& [form, speed] : {std::pair("stored", ours), std::pair("embree", theirs)})
       rows.add(segments, form, "speed, " + std::string(kind.name), "million rays a CPU second", speed);
-    print_hits(kind, against.trace(*kind.rays, options), r.embree_hits);
+    agree &= print_hits(kind, against.trace(*kind.rays, options), r.embree_hits);
   }
+  return agree ? 0 : 1;
 }

@@ -8,6 +8,7 @@
 #include "geom/base_mesh_generators.h"
 #include "geom/lattice_fabric.h"
 #include "tests/kernels/fabric_tracer.h"
+#include "tests/tolerances.h"
 
 namespace wale::test {
 namespace {
@@ -84,6 +85,15 @@ TEST(Procedural, EveryWidthHasTheSameHits) {
     compare(device, make_tube(0.02, 0.01, 24, 3), 3, 1, 500);
   }
 }
+TEST(Procedural, ASegmentTakesFewBytes) {
+  const FabricTracer tracer(test_device(), knit(sheet(0.08), Storage::procedural));
+  const FabricDevice& device = tracer.fabric();
+  ASSERT_EQ(device.tight_joints, 0u);
+  ASSERT_GT(device.segment_count, 50000u);
+  EXPECT_LE(double(device.tree.tree_bytes() + device.lattice.bytes()),
+            tolerance::kProceduralBytes * double(device.segment_count));
+}
+
 TEST(Procedural, ClothBentTooFarIsStored) {
   const BaseMesh mesh = make_pillow(0.02, 0.02, 0.006, 6, 6);
   const FabricTracer stored(test_device(), knit(mesh, Storage::stored));

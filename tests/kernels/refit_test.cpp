@@ -10,6 +10,7 @@
 #include "geom/base_mesh_generators.h"
 #include "geom/error.h"
 #include "tests/kernels/fabric_tracer.h"
+#include "tests/tolerances.h"
 
 namespace wale::test {
 namespace {
@@ -150,6 +151,17 @@ TEST(Refit, CountsWhatUpdatesNeed) {
   const Fabric fabric = knit(make_swatch(0.03, 0.03, 2, 2), 3);
   const FabricTracer fixed(test_device(), fabric), updatable(test_device(), fabric, -1, LocalStage::exact, true);
   EXPECT_GE(updatable.fabric().bytes, fixed.fabric().bytes + fabric.anchors.size() * (sizeof(WAnchor) + 12 + 1));
+}
+
+TEST(Refit, ASegmentTakesFewBytes) {
+  const Fabric fabric = knit(make_swatch(0.05, 0.05, 2, 2), 3);
+  const FabricTracer tracer(test_device(), fabric);
+  const FabricDevice& device = tracer.fabric();
+  const double segments = double(device.segment_count);
+  ASSERT_GT(segments, 10000);
+  const double to_trace = double(device.tree.leaves.bytes() + device.tree.tree_bytes()) / segments;
+  EXPECT_LE(to_trace, tolerance::kBytesToTrace);
+  EXPECT_LE(to_trace + double(device.frames.bytes()) / segments, tolerance::kBytesToShade);
 }
 
 TEST(Refit, MeshesMovedToNoPlaceAreRefused) {
