@@ -16,6 +16,12 @@ void choose_traversal(Features& f, const IntegratorScene& integrator, const Devi
   f.lanes = f.simt ? 1 : integrator.lanes ? integrator.lanes : int(traits.lanes);
 }
 
+Normals normals_of(const IntegratorScene& integrator) {
+  return integrator.normals == "flat"     ? Normals::flat
+         : integrator.normals == "linear" ? Normals::linear
+                                          : Normals::rotation_minimising;
+}
+
 }  // namespace
 
 std::string Features::options() const {
@@ -48,6 +54,12 @@ LocalStage local_stage(const IntegratorScene& integrator) {
                                             : LocalStage::ring;
 }
 
+Joints joints(const IntegratorScene& integrator) {
+  return integrator.joints == "open"      ? Joints::open
+         : integrator.joints == "capsule" ? Joints::capsule
+                                          : Joints::mitre;
+}
+
 Features analyse(const World& world, const IntegratorScene& integrator, bool aovs, const DeviceTraits& traits) {
   Features f;
   for (const auto& fabric : world.fabrics) {
@@ -67,6 +79,7 @@ Features analyse(const World& world, const IntegratorScene& integrator, bool aov
   f.aovs = aovs;
   f.ply_colors = !world.ply_colors.empty();
   f.local_stage = local_stage(integrator);
+  f.normals = normals_of(integrator);
   choose_traversal(f, integrator, traits);
   return f;
 }
@@ -101,6 +114,7 @@ Features foresee(const Scene& scene, bool aovs, const DeviceTraits& traits) {
   f.paper_lobes = f.plies && integrator.ply_lobes == "paper";
   f.aovs = aovs;
   f.local_stage = local_stage(integrator);
+  f.normals = normals_of(integrator);
   choose_traversal(f, integrator, traits);
   return f;
 }
@@ -150,6 +164,8 @@ std::vector<Reason> explain(const World& world, const IntegratorScene& integrato
        f.ply_colors ? "fabrics: " + names(world.colored_fabrics, [](const auto& n) { return n; })
                     : "no plies, stripes, heather or color_image"},
       {"local stage " + integrator.local_stage, curves, curves ? "integrator.local_stage" : "no fabric in the scene"},
+      {"normals " + integrator.normals, curves, curves ? "integrator.normals" : "no fabric in the scene"},
+      {"joints " + integrator.joints, curves, curves ? "integrator.joints" : "no fabric in the scene"},
       {fmt::format("{} lanes", f.lanes), true,
        f.simt             ? "one ray per work-item, down quantised nodes"
        : integrator.lanes ? "integrator.lanes"

@@ -99,6 +99,9 @@ IntegratorScene integrator_of(const JsonNode& node) {
   out.light_sampling = node["light_sampling"].text;
   out.ply_lobes = node["ply_lobes"].text;
   out.local_stage = node["local_stage"].text;
+  out.joints = node["joints"].text;
+  out.normals = node["normals"].text;
+  out.precision = node["precision"].text;
   out.lanes = integer_of(node, "lanes");
   out.pool = static_cast<unsigned>(number_of(node, "pool"));
   out.seed = static_cast<unsigned>(number_of(node, "seed"));

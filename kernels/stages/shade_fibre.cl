@@ -24,11 +24,11 @@
 #endif
 
 W_CALL void w_shade_fibre(const WFrame* frame, W_PATH_PARAMS, const WScene* scene, const WLights* lights,
-                          __global const float* frames, __global const WFibreMaterial* materials,
+                          __global const float* frames, uint normals, __global const WFibreMaterial* materials,
                           W_COLOR_PARAMS __global float4* aov, uint slot, uint depth) {
   const WRay ray = w_slot_ray(ray_o, ray_l, ray_d, slot);
   const WHit h = w_slot_hit(hit, hit_uv, slot);
-  const WPlySurface s = w_ply_surface(scene, frames, &ray, &h);
+  const WPlySurface s = w_ply_surface(scene, frames, &ray, &h, normals);
   WFibreMaterial material = materials[s.material & ~W_MATERIAL_FIBRE];
 #ifdef W_HAS_PLY_COLORS
   if (colors[s.segment] & W_COLOR_GIVEN)
@@ -79,7 +79,7 @@ W_CALL void w_shade_fibre(const WFrame* frame, W_PATH_PARAMS, const WScene* scen
 }
 
 __kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PARAMS, __global const float* frames,
-                          __global const WFibreMaterial* materials, W_COLOR_PARAMS __global float4* aov,
+                          uint normals, __global const WFibreMaterial* materials, W_COLOR_PARAMS __global float4* aov,
                           __global const uint* list, __global const uint* counts, uint count_index, uint depth) {
   const uint i = get_global_id(0);
   const uint count = counts[count_index];
@@ -92,5 +92,5 @@ __kernel void shade_fibre(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_P
   const WScene scene = W_SCENE;
   w_ask_for_hits(&scene, frames, list, hit, i, count);
   const WLights lights = W_LIGHTS;
-  w_shade_fibre(&frame, W_PATH_ARGS, &scene, &lights, frames, materials, W_COLOR_ARGS aov, slot, depth);
+  w_shade_fibre(&frame, W_PATH_ARGS, &scene, &lights, frames, normals, materials, W_COLOR_ARGS aov, slot, depth);
 }

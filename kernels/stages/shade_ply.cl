@@ -41,11 +41,11 @@ static inline float3 w_leave(const WPlySurface* s, float3 out, float3 middle, fl
 #endif
 
 W_CALL void w_shade_ply(const WFrame* frame, W_PATH_PARAMS, const WScene* scene, const WLights* lights,
-                        __global const float* frames, __global const WPlyMaterial* materials,
+                        __global const float* frames, uint normals, __global const WPlyMaterial* materials,
                         W_DETAIL_PARAMS W_COLOR_PARAMS __global float4* aov, uint slot, uint depth) {
   const WRay ray = w_slot_ray(ray_o, ray_l, ray_d, slot);
   const WHit h = w_slot_hit(hit, hit_uv, slot);
-  const WPlySurface s = w_ply_surface(scene, frames, &ray, &h);
+  const WPlySurface s = w_ply_surface(scene, frames, &ray, &h, normals);
   const float3 wv = -ray.d;
   const WPlyMaterial material = W_COLORED(materials[s.material], s.segment);
   WFibreAt fibre = w_fibre_mean(material.tilt);
@@ -122,7 +122,7 @@ W_CALL void w_shade_ply(const WFrame* frame, W_PATH_PARAMS, const WScene* scene,
 }
 
 __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PARAMS, __global const float* frames,
-                        __global const WPlyMaterial* materials, W_DETAIL_PARAMS W_COLOR_PARAMS __global float4* aov,
+                        uint normals, __global const WPlyMaterial* materials, W_DETAIL_PARAMS W_COLOR_PARAMS __global float4* aov,
                         __global const uint* list, __global const uint* counts, uint count_index, uint depth) {
   const uint i = get_global_id(0);
   const uint count = counts[count_index];
@@ -135,5 +135,5 @@ __kernel void shade_ply(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, W_LIGHT_PAR
   const WScene scene = W_SCENE;
   w_ask_for_hits(&scene, frames, list, hit, i, count);
   const WLights lights = W_LIGHTS;
-  w_shade_ply(&frame, W_PATH_ARGS, &scene, &lights, frames, materials, W_DETAIL_ARGS W_COLOR_ARGS aov, slot, depth);
+  w_shade_ply(&frame, W_PATH_ARGS, &scene, &lights, frames, normals, materials, W_DETAIL_ARGS W_COLOR_ARGS aov, slot, depth);
 }
