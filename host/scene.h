@@ -156,14 +156,17 @@ struct IntegratorScene {
   int spp = 64;
   int max_depth = 0;  ///< scattering events; 0 = unlimited
   int russian_roulette_depth = 4;
-  std::string light_sampling = "mis";  ///< mis, light, bsdf
-  std::string ply_lobes = "full";      ///< full, paper
-  std::string local_stage = "exact";   ///< exact, cell, cell+ring
-  std::string joints = "mitre";        ///< open, capsule, mitre
+  std::string light_sampling = "mis";      ///< mis, light, bsdf
+  std::string ply_lobes = "full";          ///< full, paper
+  std::string local_stage = "exact";       ///< exact, cell, cell+ring
+  std::string ply_shadows = "attenuated";  ///< attenuated, opaque
+  std::string light_choice = "power";      ///< power, uniform
+  std::string math = "exact";              ///< exact, relaxed
+  std::string joints = "mitre";            ///< open, capsule, mitre
   std::string normals = "rotation-minimising";  ///< flat, linear, rotation-minimising
   std::string precision = "float";              ///< float, double
-  int lanes = 0;                       ///< 0 = from the device; 1, 8, 16
-  unsigned pool = 0;                   ///< paths in flight; 0 = from the device
+  int lanes = 0;                           ///< 0 = from the device; 1, 8, 16
+  unsigned pool = 0;                       ///< paths in flight; 0 = from the device
   unsigned seed = 0;
 };
 
