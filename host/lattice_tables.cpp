@@ -142,7 +142,10 @@ void LatticeTables::write_entry(Piece& piece, size_t number) {
   head[W_LEAF_SPHERES] = joints_ == Joints::open ? 0 : head[W_LEAF_CUTS];
   const uint32_t all = (1u << lanes) - 1u;
   if (joints_ != Joints::mitre) head[W_LEAF_CUTS] = all | all << 16;
-  if (joints_ == Joints::capsule) head[W_LEAF_SPHERES] |= all;
+  if (joints_ == Joints::capsule) {
+    head[W_LEAF_SPHERES] |= all;
+    head[W_LEAF_LAYOUT] |= W_LAYOUT_CAPSULES;
+  }
   head[W_PATCH_VERTEX] = run.table + entry.first * uint32_t(sizeof(WTileVertex) / 4);
   head[W_PATCH_VERTEX_STRIDE] = run.stride;
   head[W_PATCH_CORNER] = run.corner;

@@ -23,12 +23,13 @@ W_INLINE float3 vertex(const Ply* ply, int i) {
 }
 
 /* run: number of the leaf in its buffer (16-byte units), first vertex of the run's ply 0, vertices per ply, 1 if the run
-   has ghost ends. joints: W_JOINTS_*. The host has written the leaf's header but for CUTS and SPHERES. Returns the leaf's box. What happens
+   has ghost ends. joints: W_JOINTS_*. The host has written the leaf's header but for CUTS, SPHERES and W_LAYOUT_CAPSULES. Returns the leaf's box. What happens
    at a joint follows from the vertices two before to two after it only, so that every leaf that meets the joint decides
    alike. */
 W_INLINE Bounds pack_leaf(uint4 run, __global const float* positions, uint joints, __global uint* leaves) {
   __global uint* leaf = leaves + ((size_t)run.x << 2);
-  const uint layout = leaf[W_LEAF_LAYOUT], n = layout & 255u, lanes = (layout >> 8) & 255u, stride = layout >> 16;
+  const uint layout = leaf[W_LEAF_LAYOUT], n = layout & 255u, lanes = (layout >> 8) & 255u;
+  const uint stride = W_LAYOUT_STRIDE(layout);
   const int intervals = (int)(lanes / n), first = (int)(leaf[W_LEAF_SEGMENT] - run.y);
   const w_vf r = w_all(as_float(leaf[W_LEAF_RADIUS]));
   Points point;
@@ -59,6 +60,7 @@ W_INLINE Bounds pack_leaf(uint4 run, __global const float* positions, uint joint
   const Bounds box =
       bound_joints(&point, n, lanes, r, (open_start ? 1u : 0u) | (open_end ? 2u : 0u), joints, &cut_joints);
   const uint segments = (1u << lanes) - 1u;
+  if (joints == W_JOINTS_CAPSULE) leaf[W_LEAF_LAYOUT] = layout | W_LAYOUT_CAPSULES;
   leaf[W_LEAF_CUTS] = (cut_joints & segments) | (cut_joints >> n & segments) << 16;
   leaf[W_LEAF_SPHERES] = joints == W_JOINTS_OPEN
                              ? 0u

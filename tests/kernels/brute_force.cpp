@@ -57,6 +57,7 @@ BruteForce::BruteForce(const std::vector<PlyPatch>& patches, const std::vector<f
         const long i = long(patch.first + k);
         OracleSegment s{line.at(i - 1), line.at(i), line.at(i + 1), line.at(i + 2), line.cut(i),        line.cut(i + 1),
                         false,          false,      patch.radius,   patch.tau,      first + uint32_t(i)};
+        s.capsules = joints == Joints::capsule;
         if (joints != Joints::mitre) s.cut_start = s.cut_end = true;
         s.sphere_start = s.cut_start && joints != Joints::open;
         s.sphere_end = s.cut_end && joints != Joints::open && !patch.ghost_ends && i + 2 == long(patch.count);
