@@ -212,6 +212,44 @@ TEST(JointLevels, ProceduralLeavesAreTheirStoredForm) {
   EXPECT_NE(distances[1], distances[2]);
 }
 
+// Distances of what camera rays meet on a knit, against mitres: the price list of joints at this cloth's tolerance.
+TEST(JointLevels, OnAKnitInPlyRadii) {
+  fmt::print("| tolerance, radii | segments a stitch | joints | > 0.01 radii off | > 0.1 | > 1 | mean |off|, radii |\n");
+  fmt::print("|---|---|---|---|---|---|---|\n");
+  for (const double tolerance : {0.05, 0.2}) {
+    FabricSpec spec;
+    spec.scale.kind = FabricScale::Kind::uv_metres;
+    spec.tolerance = tolerance;
+    const Fabric fabric = knit_fabric(make_swatch(0.012, 0.012, 8, 8), stockinette_pattern(0.004), spec);
+    const double stitches = 0.012 * 0.012 / (fabric.report.stitch_metres.x * fabric.report.stitch_metres.y);
+    const double stitch = double(fabric.report.segments) / spec.plies / stitches;  // segments of a ply
+    std::vector<Hit> hits[3];
+    for (const Joints joints : kLevels) {
+      const FabricTracer tracer(test_device(), fabric, -1, LocalStage::exact, false, joints);
+      hits[int(joints)] = tracer.trace(primary_rays(tracer.bounds(), 20000, 3));
+    }
+    double deep[2] = {};
+    for (const Joints joints : {Joints::open, Joints::capsule}) {
+      size_t met = 0, over[3] = {};
+      double sum = 0;
+      for (size_t i = 0; i < hits[2].size(); ++i) {
+        if (hits[2][i].kind != W_HIT_PLY) continue;
+        ++met;
+        const Hit& other = hits[int(joints)][i];
+        const double off = other.kind == W_HIT_PLY ? std::abs(other.t - hits[2][i].t) / fabric.ply_radius : 10;
+        over[0] += off > 0.01, over[1] += off > 0.1, over[2] += off > 1;
+        sum += std::min(off, 10.0);
+      }
+      deep[int(joints)] = double(over[2]) / double(met);
+      fmt::print("| {} | {:.1f} | {} | {:.2g} % | {:.2g} % | {:.2g} % | {:.2g} |\n", tolerance, stitch, name_of(joints),
+                 100.0 * double(over[0]) / double(met), 100.0 * double(over[1]) / double(met),
+                 100.0 * deep[int(joints)], sum / double(met));
+    }
+    EXPECT_GT(deep[0], 0.005);             // gaps show
+    EXPECT_LT(deep[1], 0.1 * deep[0]);  // spheres close them
+  }
+}
+
 // A tree that follows its mesh keeps its joints.
 TEST(JointLevels, RefitKeepsThem) {
   FabricSpec spec;
