@@ -38,6 +38,25 @@ std::vector<Ray> rays_at_joints(const BruteForce& oracle, size_t count) {
   return rays;
 }
 
+/// Rays past the outermost points of segments' ends along the axes, square to them: boxes must hold these.
+std::vector<Ray> rays_at_rims(const BruteForce& oracle, size_t count) {
+  Stream random{13};
+  std::vector<Ray> rays;
+  while (rays.size() < count) {
+    const OracleSegment& s = oracle.segment(random.next() % oracle.segments());
+    const dvec3 e = s.end - s.start;
+    if (!(glm::length(e) > 0.01 * s.radius)) continue;
+    dvec3 axis(0);
+    axis[int(random.next() % 3)] = random.next() & 1 ? 1 : -1;
+    const dvec3 a = glm::normalize(e), square = axis - glm::dot(axis, a) * a;
+    if (glm::length(square) < 0.1) continue;
+    const dvec3 at = random.next() & 1 ? s.start + 1e-3 * e : s.end - 1e-3 * e;
+    const dvec3 d = glm::normalize(glm::cross(axis, random.direction()));
+    rays.push_back(make_ray(at + 0.99 * s.radius * glm::normalize(square) - 20 * s.radius * d, d, 0));
+  }
+  return rays;
+}
+
 struct Strand {
   const char* name;
   Strands strands;
@@ -74,6 +93,8 @@ TEST(JointLevels, AgreeWithBruteForceOverTheSamePrimitives) {
       std::vector<Ray> rays = primary_rays(tracer.tree().bounds, 5000, 3);
       const std::vector<Ray> aimed = rays_at_joints(oracle, 5000);
       rays.insert(rays.end(), aimed.begin(), aimed.end());
+      const std::vector<Ray> rims = rays_at_rims(oracle, 5000);
+      rays.insert(rays.end(), rims.begin(), rims.end());
       const std::vector<Hit> first = tracer.trace(rays, "-DW_LANES=16");
       agrees(s, oracle, tracer, rays, first, joints);
       const std::vector<Ray> bounce = bounce_rays(rays, first, tracer.surfaces(rays, first), 5);
@@ -224,9 +245,11 @@ TEST(JointLevels, OnAKnitInPlyRadii) {
     const double stitches = 0.012 * 0.012 / (fabric.report.stitch_metres.x * fabric.report.stitch_metres.y);
     const double stitch = double(fabric.report.segments) / spec.plies / stitches;  // segments of a ply
     std::vector<Hit> hits[3];
+    std::vector<Ray> rays;
     for (const Joints joints : kLevels) {
       const FabricTracer tracer(test_device(), fabric, -1, LocalStage::exact, false, joints);
-      hits[int(joints)] = tracer.trace(primary_rays(tracer.bounds(), 20000, 3));
+      if (rays.empty()) rays = primary_rays(tracer.bounds(), 20000, 3);
+      hits[int(joints)] = tracer.trace(rays);
     }
     double deep[2] = {};
     for (const Joints joints : {Joints::open, Joints::capsule}) {
