@@ -1,6 +1,7 @@
 // Rays in packets find what each finds alone, to the last bit: whatever the company.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 
 #include "tests/kernels/synthetic.h"
@@ -40,6 +41,13 @@ void expect_the_same_on(const Strands& strands, const char* name) {
   const Box& bounds = tracer.tree().bounds;
   expect_the_same(tracer, camera_rays(bounds, 96, 0.8), "wide");
   expect_the_same(tracer, camera_rays(bounds, 96, 0.02), "narrow");
+  // Off the plies towards one light, still neighbours: alone they ask w_ahead first, in packets never.
+  const std::vector<Ray> narrow = camera_rays(bounds, 96, 0.02);
+  const std::vector<Hit> starts = tracer.trace(narrow, kWide);
+  std::vector<Ray> lit = bounce_rays(narrow, starts, tracer.surfaces(narrow, starts), 11);
+  for (size_t i = 0; i < lit.size(); ++i)
+    for (int k = 0; k < 3; ++k) lit[i].d[k] = float(std::array{0.86, 0.5, 0.1}[size_t(k)] + 1e-4 * double(i % 7));
+  expect_the_same(tracer, lit, "neighbours off the plies");
   std::vector<Ray> holed = camera_rays(bounds, 96, 0.1);
   for (size_t i = 0; i < holed.size(); i += 5) holed[i].d[i % 3] = NAN;
   expect_the_same(tracer, holed, "some not numbers");
