@@ -14,6 +14,7 @@ struct SceneArgs {
   std::string device = "0";  ///< as device_numbers() reads it
   std::filesystem::path kernel_dir;
   bool quiet = false;
+  bool every_feature = false;  ///< programs with everything built in
 };
 
 struct RenderArgs : SceneArgs {

@@ -38,6 +38,15 @@ std::string Features::options() const {
   return out;
 }
 
+Features Features::everything() const {
+  Features all = *this;
+  for (bool* built_in : {&all.plies, &all.fibres, &all.triangles, &all.spheres, &all.environment, &all.lights,
+                         &all.detail, &all.aovs, &all.ply_colors})
+    *built_in = true;
+  all.procedural |= local_stage == LocalStage::exact;  // the others need cells, which lattices do not have
+  return all;
+}
+
 bool quantised_tree(const DeviceTraits& traits, LocalStage stage) {
   return traits.traversal == Traversal::simt && stage == LocalStage::exact;
 }
@@ -90,7 +99,6 @@ Features foresee(const Scene& scene, bool aovs, const DeviceTraits& traits) {
     f.triangles |= object.kind != ObjectScene::Kind::sphere;
   }
   for (const auto& light : scene.lights) {
-    if (light.file.empty() && light.radiance == Rgb{0, 0, 0}) continue;
     f.lights = true;
     f.environment |= light.kind == LightScene::Kind::environment;
     f.spheres |= light.kind == LightScene::Kind::sphere;
