@@ -21,7 +21,7 @@ void drop_lights(World& world, const std::vector<PlyReach>& reach) {
     world.lights.power[i] = 0;
     world.dropped.push_back({"light " + world.light_names[i], *why + ": it is never sampled"});
   }
-  world.lights.choose_by_power();
+  world.lights.choose();
 }
 
 void drop_fibre_maps(World& world, const std::vector<PlyReach>& reach) {

@@ -41,7 +41,7 @@ void require_emission(const std::array<float, 3>& c) {
 
 }  // namespace
 
-EnvironmentTables environment_tables(const std::vector<float>& rgb, int width, int height) {
+EnvironmentTables environment_tables(const std::vector<float>& rgb, int width, int height, LightChoice choice) {
   if (width < 1 || height < 1 || rgb.size() != size_t(width) * height * 3)
     bug("environment_tables: {} values for {} x {} texels", rgb.size(), width, height);
   std::vector<double> brightness(size_t(width) * height);
@@ -67,8 +67,9 @@ EnvironmentTables environment_tables(const std::vector<float>& rgb, int width, i
     const int above = std::max(y - 1, 0), below = std::min(y + 1, height - 1);
     double sum = 0;
     for (int x = 0; x < width; ++x) {
-      const double weight = 0.25 * (across[size_t(above) * width + x] + 2 * across[size_t(y) * width + x] +
-                                    across[size_t(below) * width + x]);
+      const double power = 0.25 * (across[size_t(above) * width + x] + 2 * across[size_t(y) * width + x] +
+                                   across[size_t(below) * width + x]);
+      const double weight = choice == LightChoice::power ? power : power > 0 ? 1 : 0;
       row[x] = out.texels[size_t(y) * width + x].w = float(weight);
       sum += row[x];
     }
@@ -136,7 +137,7 @@ int LightTableBuilder::add_environment(const std::array<float, 3>& mean_radiance
   return add(light, mean(mean_radiance) * 4 * kPi * kPi * power_radius * power_radius);
 }
 
-void LightTables::choose_by_power() {
+void LightTables::choose() {
   double total = 0;
   int lit = 0;
   for (const double p : power) {
@@ -144,16 +145,19 @@ void LightTables::choose_by_power() {
     lit += p > 0;
   }
   // A tenth is shared evenly: a weak lamp beside the sky still lights what is near it.
-  for (size_t i = 0; i < power.size(); ++i)
-    lights[i].radiance.w = power[i] > 0 ? float(0.9 * power[i] / total + 0.1 / lit) : 0;
+  for (size_t i = 0; i < power.size(); ++i) {
+    const double share = choice == LightChoice::power ? 0.9 * power[i] / total + 0.1 / lit : 1.0 / lit;
+    lights[i].radiance.w = power[i] > 0 ? float(share) : 0;
+  }
 }
 
 bool LightTables::any() const {
   return std::any_of(power.begin(), power.end(), [](double p) { return p > 0; });
 }
 
-LightTables LightTableBuilder::finish() {
-  tables_.choose_by_power();
+LightTables LightTableBuilder::finish(LightChoice choice) {
+  tables_.choice = choice;
+  tables_.choose();
   return std::move(tables_);
 }
 

@@ -27,6 +27,7 @@ WFrame frame_of(const World& world, const IntegratorScene& integrator) {
     frame.max_depth = 1;
     frame.light_sampling = 1;
   }
+  frame.opaque_shadows = integrator.ply_shadows == "opaque";
   frame.lights = uint32_t(world.lights.lights.size());
   frame.spheres = uint32_t(world.spheres.size());
   return frame;
