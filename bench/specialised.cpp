@@ -49,7 +49,7 @@ struct Loaded {
 RenderOptions options_of(bool all) {
   RenderOptions options;
   options.spp = kSamples;
-  options.every_feature = all;
+  if (all) options.also = Features::everything();
   return options;
 }
 

@@ -150,8 +150,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   start.step("read the scene");
   // Programs are compiled while the scene is knitted.
   Rehearsal rehearsal(args.device, [&](const DeviceTraits& traits) {
-    Features features = foresee(scene, aovs, traits);
-    if (args.every_feature) features = features.everything();
+    const Features features = foresee(scene, aovs, traits).with(args.also);
     auto stages = geometry_stages(features);
     for (auto& stage : wavefront_stages(features)) stages.push_back(std::move(stage));
     return Rehearsal::Plan{stages, features.options(), args.kernel_dir};
@@ -178,7 +177,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   if (args.seconds > 0 && args.spp == 0) options.spp = 1 << 20;  // the clock decides
   options.seconds = args.seconds;
   options.aovs = aovs;
-  options.every_feature = args.every_feature;
+  options.also = args.also;
   options.kernel_dir = args.kernel_dir;
   options.ready = catch_stop_signals;  // before the first ray there is nothing to keep
   devices.upload(world, scene.integrator, options);

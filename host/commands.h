@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "host/features.h"
 #include "host/world.h"
 
 namespace wale {
@@ -15,7 +16,7 @@ struct SceneArgs {
   std::string device = "0";  ///< as device_numbers() reads it
   std::filesystem::path kernel_dir;
   bool quiet = false;
-  bool every_feature = false;  ///< programs with everything built in
+  Features also;  ///< built into the programs beside what the scene calls for
 };
 
 struct RenderArgs : SceneArgs {

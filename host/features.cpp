@@ -39,12 +39,26 @@ std::string Features::options() const {
   return out;
 }
 
-Features Features::everything() const {
+Features Features::with(const Features& others) const {
   Features all = *this;
-  for (bool* built_in : {&all.plies, &all.fibres, &all.triangles, &all.spheres, &all.environment, &all.lights,
-                         &all.detail, &all.aovs, &all.ply_colors})
-    *built_in = true;
-  all.procedural |= local_stage == LocalStage::exact;  // the others need cells, which lattices do not have
+  all.plies |= others.plies;
+  all.fibres |= others.fibres;
+  all.triangles |= others.triangles;
+  all.spheres |= others.spheres;
+  all.environment |= others.environment;
+  all.lights |= others.lights;
+  all.detail |= others.detail;
+  all.aovs |= others.aovs;
+  all.ply_colors |= others.ply_colors;
+  // The other local stages need cells, which lattices do not have.
+  all.procedural |= others.procedural && local_stage == LocalStage::exact;
+  return all;
+}
+
+Features Features::everything() {
+  Features all;
+  all.plies = all.fibres = all.triangles = all.spheres = all.environment = all.lights = true;
+  all.detail = all.aovs = all.ply_colors = all.procedural = true;
   return all;
 }
 
@@ -114,59 +128,6 @@ Features foresee(const Scene& scene, bool aovs, const DeviceTraits& traits) {
   f.local_stage = local_stage(integrator);
   choose_traversal(f, integrator, traits);
   return f;
-}
-
-std::vector<Reason> explain(const World& world, const IntegratorScene& integrator, const Features& f) {
-  const auto names = [](const auto& items, const auto& name) {
-    std::string out;
-    for (const auto& item : items) out += (out.empty() ? "" : ", ") + std::string(name(item));
-    return out;
-  };
-  const std::string lights = names(world.light_names, [](const auto& n) { return n; });
-  const auto with = [&](const auto& has) {
-    std::vector<std::string> chosen;
-    for (const auto& fabric : world.fabrics)
-      if (has(fabric)) chosen.push_back(fabric.name);
-    return names(chosen, [](const auto& n) { return n; });
-  };
-  const bool curves = f.plies || f.fibres;
-  return {
-      {"plies", f.plies,
-       f.plies    ? "fabrics: " + with([](const Fabric& x) { return x.report.plies > 0; })
-       : f.fibres ? "every fabric shows its fibres instead"
-                  : "no fabric in the scene"},
-      {"fibres", f.fibres,
-       f.fibres ? "detail \"fibres\" or flyaways of " + with([](const Fabric& x) { return x.report.fibres > 0; })
-                : "no fabric has detail \"fibres\" or flyaways"},
-      {"procedural storage", f.procedural,
-       f.procedural ? "fabrics: " + with([](const Fabric& x) { return x.procedural; })
-                    : "no fabric has storage \"procedural\", or one that is large and regular enough"},
-      {"triangles", f.triangles,
-       f.triangles ? fmt::format("{} triangles of props and lights", world.triangle_count())
-                   : "no mesh, ground or quad light"},
-      {"spheres", f.spheres, f.spheres ? fmt::format("{} spheres", world.spheres.size()) : "no sphere"},
-      {"environment", f.environment, f.environment ? "an environment light" : "no environment light"},
-      {"light sampling", f.lights,
-       f.lights                              ? "lights: " + lights
-       : integrator.light_sampling == "bsdf" ? "integrator.light_sampling is \"bsdf\""
-                                             : "no light to sample"},
-      {"fibre detail", f.detail,
-       f.detail  ? "fabrics.detail is \"maps\" or \"paper\""
-       : f.plies ? "fabrics.detail is \"none\""
-       : curves  ? "every fibre is a curve of its own"
-                 : "no fabric in the scene"},
-      {"Lambert ply lobes", f.paper_lobes, "integrator.ply_lobes is \"" + integrator.ply_lobes + "\""},
-      {"relaxed arithmetic", f.relaxed_math, "integrator.math is \"" + integrator.math + "\""},
-      {"feature images", f.aovs, f.aovs ? "an .exr is written" : "only .png is written"},
-      {"varying colours", f.ply_colors,
-       f.ply_colors ? "fabrics: " + names(world.colored_fabrics, [](const auto& n) { return n; })
-                    : "no plies, stripes, heather or color_image"},
-      {"local stage " + integrator.local_stage, curves, curves ? "integrator.local_stage" : "no fabric in the scene"},
-      {fmt::format("{} lanes", f.lanes), true,
-       f.simt             ? "one ray per work-item, down quantised nodes"
-       : integrator.lanes ? "integrator.lanes"
-                          : "width of the device's vectors"},
-  };
 }
 
 }  // namespace wale

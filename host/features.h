@@ -34,9 +34,11 @@ struct Features {
   /// Definitions for the kernels.
   std::string options() const;
 
-  /// The same with every structure built in, whether the scene has it or not; what is a choice (local stage, lobes,
-  /// lanes) stays as it is. The picture is the same, bit for bit.
-  Features everything() const;
+  /// The same with the structure of others built in too, whether the scene has it or not; what is a choice (local stage,
+  /// lobes, arithmetic, lanes) stays as it is. The picture is the same, bit for bit.
+  Features with(const Features& others) const;
+  /// Every structure that may be built in.
+  static Features everything();
 };
 
 /// One decision and the object or key that asks for it; the lines of `wale plan`.

@@ -46,10 +46,11 @@ void add_device_options(CLI::App& command, SceneArgs& args, const std::string& d
   command.add_option("--kernel-dir", args.kernel_dir, "read kernels from this folder instead of the built-in ones");
 }
 
-void add_features_option(CLI::App& command, bool& every_feature) {
+void add_features_option(CLI::App& command, wale::Features& also) {
   command
       .add_option_function<std::string>(
-          "--features", [&every_feature](const std::string& word) { every_feature = word == "all"; },
+          "--features",
+          [&also](const std::string& word) { also = word == "all" ? wale::Features::everything() : wale::Features(); },
           "what is built into the kernels: needed (what the scene calls for, the default) or all; same picture")
       ->check(CLI::IsMember({"needed", "all"}));
 }
@@ -85,7 +86,7 @@ int run(int argc, char** argv) {
   auto* c = app.add_subcommand("render", "render a scene to images (.exr with features, .png)");
   add_scene_options(*c, render);
   add_device_options(*c, render, "its number, several with commas between them, or all");
-  add_features_option(*c, render.every_feature);
+  add_features_option(*c, render.also);
   c->add_option("-o,--output", render.outputs, "image to write (repeatable)")->required()->allow_extra_args(false);
   c->add_option("--spp", render.spp, "samples per pixel")->check(CLI::Range(1, 1 << 24));
   c->add_option("--seconds", render.seconds, "stop after this many seconds")->check(finite_number(false));
@@ -103,7 +104,7 @@ int run(int argc, char** argv) {
   c = app.add_subcommand("plan", "say what will be simulated and why");
   add_scene_options(*c, scene);
   add_device_options(*c, scene, "its number");
-  add_features_option(*c, scene.every_feature);
+  add_features_option(*c, scene.also);
   c->add_option("--json", json, "write the plan as JSON (- for the terminal)");
   c->callback([&] { status = wale::run_plan(scene, json, loaders); });
   c = app.add_subcommand("export", "write the ply curves: .obj, .pbrt, .txt (Mitsuba), .usda");

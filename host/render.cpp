@@ -47,7 +47,7 @@ class Job {
       : devices_(devices),
         options_(options),
         progress_(progress),
-        aovs_(options.aovs || options.every_feature),
+        aovs_(options.aovs || options.also.aovs),
         frame_(frame_of(world, integrator)) {
     pixels_ = uint32_t(padded_pixels(world.camera.width, world.camera.height));
     waves_.resize(devices.size());
@@ -191,8 +191,7 @@ uint32_t pool_of(const DeviceTraits& traits, const IntegratorScene& integrator, 
 
 Features features_of(const DeviceTraits& traits, const World& world, const IntegratorScene& integrator,
                      const RenderOptions& options) {
-  const Features features = analyse(world, integrator, options.aovs, traits);
-  return options.every_feature ? features.everything() : features;
+  return analyse(world, integrator, options.aovs, traits).with(options.also);
 }
 
 Rendered render(std::span<const RenderDevice> devices, const World& world, const IntegratorScene& integrator,

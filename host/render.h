@@ -14,7 +14,7 @@ struct RenderOptions {
   double seconds = 0;  ///< > 0: stop after this time, whatever spp says
   uint32_t pool = 0;   ///< paths in flight; 0 = from the device
   bool aovs = false;
-  bool every_feature = false;  ///< programs with everything built in: Features::everything()
+  Features also;  ///< built in beside what the scene calls for
   bool count_cpu_time = false;  ///< stages by CPU time: see Wavefront::count_cpu_time
   RayRecord* record = nullptr;  ///< keeps the rays that are sent
   std::filesystem::path kernel_dir;
