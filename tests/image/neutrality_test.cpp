@@ -90,7 +90,7 @@ TEST_P(Bundled, EverythingBuiltInGivesTheSamePicture) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Bundled, testing::ValuesIn(bundled_scenes()),
-                         [](const auto& info) { return info.param.stem().string(); });
+                         [](const auto& scene) { return scene.param.stem().string(); });
 
 // A plain cloth under a lamp; nothing of what is built in beside it is there.
 Scene plain_scene() {
