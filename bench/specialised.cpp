@@ -1,7 +1,7 @@
 // Kernels built for what a scene calls for against kernels with everything built in (`--features all`): the same
 // picture, time per vertex of a path, compile time, machine code and stack. Usage:
 //   specialised_bench [-r REPEATS] SCENE...
-// writes the table of bench/results/specialised.md. Times: CPU seconds of all threads, the two kinds of programs in
+// writes the tables of bench/results/specialised.md, the last one for the first scene. Times: CPU seconds of all threads, the two kinds of programs in
 // turn, median of the ratios within each turn. Compiling: CPU seconds of a fresh process with an empty cache of PoCL
 // until the first picture is done, less those of the picture once more. Code and stack: of the largest machine code that
 // the cache then holds for a kernel; on devices that say so, the kernel's private memory.
@@ -46,12 +46,14 @@ struct Loaded {
                                   [](const auto& f) { return read_image(f, true); }})) {}
 };
 
-RenderOptions options_of(bool all) {
+RenderOptions options_of(const Features& also) {
   RenderOptions options;
   options.spp = kSamples;
-  if (all) options.also = Features::everything();
+  options.also = also;
   return options;
 }
+
+Features all_or_nothing(bool all) { return all ? Features::everything() : Features(); }
 
 // In a process of its own: prints the CPU seconds that compiling took.
 int compile_once(const std::string& file, bool all) {
@@ -61,7 +63,7 @@ int compile_once(const std::string& file, bool all) {
   double seconds[2];
   for (double& s : seconds) {
     const std::clock_t start = std::clock();
-    render(device, loaded.world, scene, loaded.scene.integrator, options_of(all));
+    render(device, loaded.world, scene, loaded.scene.integrator, options_of(all_or_nothing(all)));
     s = double(std::clock() - start) / CLOCKS_PER_SEC;
   }
   fmt::print("{}\n", seconds[0] - seconds[1]);
@@ -135,14 +137,14 @@ size_t different_values(const Image& a, const Image& b) {
   return different;
 }
 
-Times time_both(const Device& device, const Loaded& loaded, int repeats) {
+Times time_both(const Device& device, const Loaded& loaded, const Features& also, int repeats) {
   const SceneDevice scene(device, loaded.world);
   Times out;
   for (int k = 0; k < repeats + 1; ++k) {
     std::array<Rendered, 2> r;
     for (int turn = 0; turn < 2; ++turn) {
       const int all = (turn + k) % 2;
-      RenderOptions options = options_of(all);
+      RenderOptions options = options_of(all ? also : Features());
       options.count_cpu_time = device.traits().cpu;
       r[all] = render(device, loaded.world, scene, loaded.scene.integrator, options);
     }
@@ -181,9 +183,32 @@ std::string kernel_rows(const std::string& scene, const Times& times, const std:
 
 // What the driver says that a kernel's work-item keeps outside of registers, bytes.
 uint64_t private_bytes(const Device& device, const Loaded& loaded, bool all, const char* kernel, const char* file) {
-  const Features features = features_of(device.traits(), loaded.world, loaded.scene.integrator, options_of(all));
+  const Features features = features_of(device.traits(), loaded.world, loaded.scene.integrator,
+                                       options_of(all_or_nothing(all)));
   const cl::Kernel built(build_program(device, file, features.options()), kernel);
   return built.getWorkGroupInfo<CL_KERNEL_PRIVATE_MEM_SIZE>(device.id());
+}
+
+// What each structure costs a scene that has none of it.
+void print_alone(const Device& device, const std::string& file, int repeats) {
+  const std::vector<std::pair<const char*, bool Features::*>> members = {
+      {"single fibres", &Features::fibres},          {"procedural leaves", &Features::procedural},
+      {"triangles", &Features::triangles},           {"spheres", &Features::spheres},
+      {"fibre maps", &Features::detail},             {"colours that vary", &Features::ply_colors},
+      {"features of the first hit", &Features::aovs}};
+  const Loaded loaded(file);
+  fmt::print("\nBuilt in beside what {} calls for, time with it over time without:\n\n", file);
+  fmt::print("| structure | per vertex | intersect | connect | shade_ply |\n|---|---|---|---|---|\n");
+  for (const auto& [name, member] : members) {
+    Features also;
+    also.*member = true;
+    const Times times = time_both(device, loaded, also, repeats);
+    fmt::print("| {} | {:.3f} |", name, median(times.ratio.at("")));
+    for (const char* kernel : {"intersect", "connect", "shade_ply"})
+      fmt::print(" {:.3f} |", times.ratio.contains(kernel) ? median(times.ratio.at(kernel)) : 0.0);
+    fmt::print("\n");
+    std::fflush(stdout);
+  }
 }
 
 }  // namespace
@@ -208,7 +233,7 @@ int main(int argc, char** argv) {
     if (device.traits().compiles_at_launch)
       for (int all = 0; all < 2; ++all) compiled[all] = compile(program, file, all);
     const Loaded loaded(file);
-    const Times times = time_both(device, loaded, repeats);
+    const Times times = time_both(device, loaded, Features::everything(), repeats);
     same &= times.same;
     fmt::print("| {} | {} | {:.0f} | {:.0f} | {:.2f} | {:.1f} | {:.1f} |\n", name, times.same ? "same" : "DIFFERENT",
                median(times.ns_per_vertex[0]), median(times.ns_per_vertex[1]), median(times.ratio.at("")),
@@ -224,5 +249,6 @@ int main(int argc, char** argv) {
   }
   fmt::print("\n| scene | kernel | time, all / needed | code, KiB, needed | stack, bytes, needed | code, all | stack, all |\n");
   fmt::print("|---|---|---|---|---|---|---|\n{}", rows);
+  if (!words.empty()) print_alone(device, words.front(), repeats);
   return same ? 0 : 1;
 }
