@@ -39,7 +39,7 @@ class Devices {
   void upload(const World& world, const IntegratorScene& integrator, const RenderOptions& options) {
     for (const Device& device : open_) {
       const DeviceTraits& traits = device.traits();
-      const Features features = analyse(world, integrator, options.aovs, traits);
+      const Features features = features_of(traits, world, integrator, options);
       require_memory(device, memory_needs(world, features, pool_of(traits, integrator, options), traits));
     }
     const LocalStage stage = local_stage(integrator);
@@ -150,7 +150,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   start.step("read the scene");
   // Programs are compiled while the scene is knitted.
   Rehearsal rehearsal(args.device, [&](const DeviceTraits& traits) {
-    const Features features = foresee(scene, aovs, traits);
+    const Features features = foresee(scene, aovs, traits).with(args.also);
     auto stages = geometry_stages(features);
     for (auto& stage : wavefront_stages(features)) stages.push_back(std::move(stage));
     return Rehearsal::Plan{stages, features.options(), args.kernel_dir};
@@ -177,6 +177,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   if (args.seconds > 0 && args.spp == 0) options.spp = 1 << 20;  // the clock decides
   options.seconds = args.seconds;
   options.aovs = aovs;
+  options.also = args.also;
   options.kernel_dir = args.kernel_dir;
   options.ready = catch_stop_signals;  // before the first ray there is nothing to keep
   devices.upload(world, scene.integrator, options);
@@ -194,7 +195,8 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   start.step("first wave", r.first_sample_seconds);
 
   for (const auto& output : args.outputs) write_image(r.image, output, scene.film.exposure, scene.film.view);
-  const Features features = analyse(world, scene.integrator, aovs, devices.list().front().device->traits());
+  const Features features =
+      features_of(devices.list().front().device->traits(), world, scene.integrator, options);
   if (!args.stats.empty()) {
     Stats stats = stats_of(scene, world, devices.list(), features, r, rehearsal.cached());
     stats.first_sample_seconds = start.seconds();

@@ -10,6 +10,7 @@
 #include "host/compare.h"
 #include "host/export_curves.h"
 #include "host/materials.h"
+#include "host/plan.h"
 #include "host/progress.h"
 #include "host/report.h"
 #include "host/stop.h"
@@ -73,9 +74,8 @@ int run_plan(const SceneArgs& args, const std::filesystem::path& json, const Loa
   const Device device = Device::open(one_device_number(args.device));
   const World world = world_of(scene, loaders, args.quiet);
   const SceneDevice on_device(device, world, local_stage(scene.integrator), joints(scene.integrator));
-  const Features features = analyse(world, scene.integrator, true, device.traits());
-  deliver(json, plan_json(world, on_device, scene.integrator, features),
-          plan_text(world, on_device, scene.integrator, features));
+  const Plan plan = plan_render(device, scene, world, on_device, args.also);
+  deliver(json, plan_json(plan), plan_text(plan));
   return 0;
 }
 

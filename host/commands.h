@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "host/features.h"
 #include "host/world.h"
 
 namespace wale {
@@ -15,6 +16,7 @@ struct SceneArgs {
   std::string device = "0";  ///< as device_numbers() reads it
   std::filesystem::path kernel_dir;
   bool quiet = false;
+  Features also;  ///< built into the programs beside what the scene calls for
 };
 
 struct RenderArgs : SceneArgs {

@@ -48,6 +48,29 @@ std::string Features::options() const {
   return out;
 }
 
+Features Features::with(const Features& others) const {
+  Features all = *this;
+  all.plies |= others.plies;
+  all.fibres |= others.fibres;
+  all.triangles |= others.triangles;
+  all.spheres |= others.spheres;
+  all.environment |= others.environment;
+  all.lights |= others.lights;
+  all.detail |= others.detail;
+  all.aovs |= others.aovs;
+  all.ply_colors |= others.ply_colors;
+  // The other local stages need cells, which lattices do not have.
+  all.procedural |= others.procedural && local_stage == LocalStage::exact;
+  return all;
+}
+
+Features Features::everything() {
+  Features all;
+  all.plies = all.fibres = all.triangles = all.spheres = all.environment = all.lights = true;
+  all.detail = all.aovs = all.ply_colors = all.procedural = true;
+  return all;
+}
+
 bool quantised_tree(const DeviceTraits& traits, LocalStage stage) {
   return traits.traversal == Traversal::simt && stage == LocalStage::exact;
 }
@@ -115,7 +138,6 @@ Features foresee(const Scene& scene, bool aovs, const DeviceTraits& traits) {
     f.triangles |= object.kind != ObjectScene::Kind::sphere;
   }
   for (const auto& light : scene.lights) {
-    if (light.file.empty() && light.radiance == Rgb{0, 0, 0}) continue;
     f.lights = true;
     f.environment |= light.kind == LightScene::Kind::environment;
     f.spheres |= light.kind == LightScene::Kind::sphere;
@@ -130,63 +152,6 @@ Features foresee(const Scene& scene, bool aovs, const DeviceTraits& traits) {
   f.normals = normals_of(integrator);
   choose_traversal(f, integrator, traits);
   return f;
-}
-
-std::vector<Reason> explain(const World& world, const IntegratorScene& integrator, const Features& f) {
-  const auto names = [](const auto& items, const auto& name) {
-    std::string out;
-    for (const auto& item : items) out += (out.empty() ? "" : ", ") + std::string(name(item));
-    return out;
-  };
-  const std::string lights = names(world.light_names, [](const auto& n) { return n; });
-  const auto with = [&](const auto& has) {
-    std::vector<std::string> chosen;
-    for (const auto& fabric : world.fabrics)
-      if (has(fabric)) chosen.push_back(fabric.name);
-    return names(chosen, [](const auto& n) { return n; });
-  };
-  const bool curves = f.plies || f.fibres;
-  return {
-      {"plies", f.plies,
-       f.plies    ? "fabrics: " + with([](const Fabric& x) { return x.report.plies > 0; })
-       : f.fibres ? "every fabric shows its fibres instead"
-                  : "no fabric in the scene"},
-      {"fibres", f.fibres,
-       f.fibres ? "detail \"fibres\" or flyaways of " + with([](const Fabric& x) { return x.report.fibres > 0; })
-                : "no fabric has detail \"fibres\" or flyaways"},
-      {"procedural storage", f.procedural,
-       f.procedural ? "fabrics: " + with([](const Fabric& x) { return x.procedural; })
-                    : "no fabric has storage \"procedural\", or one that is large and regular enough"},
-      {"triangles", f.triangles,
-       f.triangles ? fmt::format("{} triangles of props and lights", world.triangle_count())
-                   : "no mesh, ground or quad light"},
-      {"spheres", f.spheres, f.spheres ? fmt::format("{} spheres", world.spheres.size()) : "no sphere"},
-      {"environment", f.environment, f.environment ? "an environment light" : "no environment light"},
-      {"light sampling", f.lights,
-       f.lights                              ? "lights: " + lights
-       : integrator.light_sampling == "bsdf" ? "integrator.light_sampling is \"bsdf\""
-                                             : "no light to sample"},
-      {"fibre detail", f.detail,
-       f.detail  ? "fabrics.detail is \"maps\" or \"paper\""
-       : f.plies ? "fabrics.detail is \"none\""
-       : curves  ? "every fibre is a curve of its own"
-                 : "no fabric in the scene"},
-      {"Lambert ply lobes", f.paper_lobes, "integrator.ply_lobes is \"" + integrator.ply_lobes + "\""},
-      {"double precision", f.double_precision, "integrator.precision is \"" + integrator.precision + "\""},
-      {"relaxed arithmetic", f.relaxed_math, "integrator.math is \"" + integrator.math + "\""},
-      {"feature images", f.aovs, f.aovs ? "an .exr is written" : "only .png is written"},
-      {"varying colours", f.ply_colors,
-       f.ply_colors ? "fabrics: " + names(world.colored_fabrics, [](const auto& n) { return n; })
-                    : "no plies, stripes, heather or color_image"},
-      {"local stage " + integrator.local_stage, curves, curves ? "integrator.local_stage" : "no fabric in the scene"},
-      {"normals " + integrator.normals, curves, curves ? "integrator.normals" : "no fabric in the scene"},
-      {"joints " + integrator.joints, curves, curves ? "integrator.joints" : "no fabric in the scene"},
-      {fmt::format("{} lanes", f.lanes), true,
-       f.simt               ? "one ray per work-item, down quantised nodes"
-       : f.double_precision ? "integrator.precision is \"double\""
-       : integrator.lanes ? "integrator.lanes"
-                          : "width of the device's vectors"},
-  };
 }
 
 }  // namespace wale

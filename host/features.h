@@ -43,6 +43,12 @@ struct Features {
 
   /// Definitions for the kernels.
   std::string options() const;
+
+  /// The same with the structure of others built in too, whether the scene has it or not; what is a choice (local stage,
+  /// lobes, arithmetic, lanes) stays as it is. The picture is the same, bit for bit.
+  Features with(const Features& others) const;
+  /// Every structure that may be built in.
+  static Features everything();
 };
 
 /// One decision and the object or key that asks for it; the lines of `wale plan`.
@@ -60,8 +66,8 @@ LocalStage local_stage(const IntegratorScene& integrator);
 Joints joints(const IntegratorScene& integrator);
 Features analyse(const World& world, const IntegratorScene& integrator, bool aovs, const DeviceTraits& traits);
 /// The same from the scene alone, before anything is knitted: what analyse() will say, unless a fabric turns out empty
-/// or so large that it is held procedurally unasked, or a light's image black. For programs that are compiled ahead
-/// (host/rehearsal.h); nothing else may rest on it.
+/// or so large that it is held procedurally unasked. For programs that are compiled ahead (host/rehearsal.h); nothing
+/// else may rest on it.
 Features foresee(const Scene& scene, bool aovs, const DeviceTraits& traits);
 std::vector<Reason> explain(const World& world, const IntegratorScene& integrator, const Features& features);
 

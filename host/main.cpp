@@ -46,6 +46,15 @@ void add_device_options(CLI::App& command, SceneArgs& args, const std::string& d
   command.add_option("--kernel-dir", args.kernel_dir, "read kernels from this folder instead of the built-in ones");
 }
 
+void add_features_option(CLI::App& command, wale::Features& also) {
+  command
+      .add_option_function<std::string>(
+          "--features",
+          [&also](const std::string& word) { also = word == "all" ? wale::Features::everything() : wale::Features(); },
+          "what is built into the kernels: needed (what the scene calls for, the default) or all; same picture")
+      ->check(CLI::IsMember({"needed", "all"}));
+}
+
 // What CLI11 could not place, with the nearest valid word.
 std::string advice(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> left = app.remaining(true);
@@ -77,6 +86,7 @@ int run(int argc, char** argv) {
   auto* c = app.add_subcommand("render", "render a scene to images (.exr with features, .png)");
   add_scene_options(*c, render);
   add_device_options(*c, render, "its number, several with commas between them, or all");
+  add_features_option(*c, render.also);
   c->add_option("-o,--output", render.outputs, "image to write (repeatable)")->required()->allow_extra_args(false);
   c->add_option("--spp", render.spp, "samples per pixel")->check(CLI::Range(1, 1 << 24));
   c->add_option("--seconds", render.seconds, "stop after this many seconds")->check(finite_number(false));
@@ -94,6 +104,7 @@ int run(int argc, char** argv) {
   c = app.add_subcommand("plan", "say what will be simulated and why");
   add_scene_options(*c, scene);
   add_device_options(*c, scene, "its number");
+  add_features_option(*c, scene.also);
   c->add_option("--json", json, "write the plan as JSON (- for the terminal)");
   c->callback([&] { status = wale::run_plan(scene, json, loaders); });
   c = app.add_subcommand("export", "write the ply curves: .obj, .pbrt, .txt (Mitsuba), .usda");

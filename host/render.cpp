@@ -23,6 +23,10 @@ WFrame frame_of(const World& world, const IntegratorScene& integrator) {
   frame.max_depth = uint32_t(integrator.max_depth);
   frame.roulette_depth = uint32_t(integrator.russian_roulette_depth);
   frame.light_sampling = integrator.light_sampling == "mis" ? 0 : integrator.light_sampling == "light" ? 1 : 2;
+  if (world.first_hits_only) {  // a path that samples lights only ends with its last scattering event
+    frame.max_depth = 1;
+    frame.light_sampling = 1;
+  }
   frame.opaque_shadows = integrator.ply_shadows == "opaque";
   frame.lights = uint32_t(world.lights.lights.size());
   frame.spheres = uint32_t(world.spheres.size());
@@ -40,14 +44,18 @@ class Job {
  public:
   Job(std::span<const RenderDevice> devices, const World& world, const IntegratorScene& integrator,
       const RenderOptions& options, const std::function<void(double)>& progress)
-      : devices_(devices), options_(options), progress_(progress), frame_(frame_of(world, integrator)) {
+      : devices_(devices),
+        options_(options),
+        progress_(progress),
+        aovs_(options.aovs || options.also.aovs),
+        frame_(frame_of(world, integrator)) {
     pixels_ = uint32_t(padded_pixels(world.camera.width, world.camera.height));
     waves_.resize(devices.size());
     result_.devices.resize(devices.size());
     const auto start = Clock::now();
     on_every_device([&](uint32_t d) {
       const Device& device = *devices[d].device;
-      const Features features = analyse(world, integrator, options.aovs, device.traits());
+      const Features features = features_of(device.traits(), world, integrator, options);
       const uint32_t pool = pool_of(device.traits(), integrator, options);
       waves_[d] =
           std::make_unique<Wavefront>(device, *devices[d].scene, features, world.camera, pool, options.kernel_dir);
@@ -152,7 +160,7 @@ class Job {
   FilmSums gather(int width, int height) {
     const size_t pixels = size_t(width) * size_t(height);
     FilmSums film{width, height, std::vector<w_float4>(pixels * kScrambles, w_float4{0, 0, 0, 0}), {}, {}};
-    if (options_.aovs) {
+    if (aovs_) {
       film.aov.assign(pixels * 4, w_float4{0, 0, 0, 0});
       film.ply.assign(pixels, W_NONE);
     }
@@ -165,6 +173,7 @@ class Job {
   std::span<const RenderDevice> devices_;
   const RenderOptions& options_;
   const std::function<void(double)>& progress_;
+  bool aovs_;
   WFrame frame_;
   uint32_t pixels_ = 0, block_pixels_ = 64;
   std::vector<std::unique_ptr<Wavefront>> waves_;
@@ -178,6 +187,11 @@ class Job {
 
 uint32_t pool_of(const DeviceTraits& traits, const IntegratorScene& integrator, const RenderOptions& options) {
   return options.pool ? options.pool : integrator.pool ? integrator.pool : traits.pool;
+}
+
+Features features_of(const DeviceTraits& traits, const World& world, const IntegratorScene& integrator,
+                     const RenderOptions& options) {
+  return analyse(world, integrator, options.aovs, traits).with(options.also);
 }
 
 Rendered render(std::span<const RenderDevice> devices, const World& world, const IntegratorScene& integrator,

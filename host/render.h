@@ -14,6 +14,7 @@ struct RenderOptions {
   double seconds = 0;  ///< > 0: stop after this time, whatever spp says
   uint32_t pool = 0;   ///< paths in flight; 0 = from the device
   bool aovs = false;
+  Features also;  ///< built in beside what the scene calls for
   bool count_cpu_time = false;  ///< stages by CPU time: see Wavefront::count_cpu_time
   RayRecord* record = nullptr;  ///< keeps the rays that are sent
   std::filesystem::path kernel_dir;
@@ -22,6 +23,10 @@ struct RenderOptions {
 
 /// Paths in flight on a device: what the options say, else the scene, else the device's table of traits.
 uint32_t pool_of(const DeviceTraits& traits, const IntegratorScene& integrator, const RenderOptions& options);
+
+/// What its programs are built for.
+Features features_of(const DeviceTraits& traits, const World& world, const IntegratorScene& integrator,
+                     const RenderOptions& options);
 
 /// A device and the scene on it.
 struct RenderDevice {

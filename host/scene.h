@@ -124,6 +124,7 @@ struct ObjectScene {
 
 struct LightScene {
   enum class Kind { quad, sphere, mesh, environment } kind = Kind::quad;
+  std::string name;       ///< may be empty
   Rgb radiance{1, 1, 1};  ///< W/(m^2 sr), times intensity already applied
   dvec3 position{0, 0, 0}, look_at{0, 0, 0}, up{0, 1, 0};
   double width = 1, height = 1;  ///< quad

@@ -230,6 +230,7 @@ LightScene light_of(const JsonNode& node, size_t index) {
   const std::string path = fmt::format("lights.{}", index);
   const std::string& type = node["type"].text;
   LightScene light;
+  light.name = text_or(node, "name", fmt::format("light{}", index));
   if (node.has("radiance")) light.radiance = color_of(node["radiance"]);
   for (double& channel : light.radiance) channel *= number_of(node, "intensity");
   if (type == "quad") {

@@ -67,7 +67,7 @@ cl_uint Wavefront::bind_path(cl::Kernel& k, cl_uint first) const {
   return first + 12;
 }
 
-void Wavefront::bind_intersect(const char* name) { scene_.bind_scene(kernel(name), bind_path(kernel(name), 1)); }
+void Wavefront::bind_intersect(const char* name) { scene_.bind_scene(kernel(name), bind_path(kernel(name), 1), features_.procedural); }
 
 std::string Wavefront::options() const { return features_.options() + scene_.options(); }
 
@@ -117,7 +117,7 @@ void Wavefront::build_programs() {
   set_args(miss, next, aov_.cl(), miss_list_.cl(), queue_counts_.cl(), kHits + 2);
   if (kernels_.contains("shade_ply")) {
     auto& k = kernel("shade_ply");
-    next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1)));
+    next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1), features_.procedural));
     set_args(k, next, scene_.frames(), uint32_t(features_.normals), scene_.ply_materials());
     next += 3;
     if (features_.detail) {
@@ -125,15 +125,15 @@ void Wavefront::build_programs() {
       set_args(k, next + 3, pixel_width(camera_));
       next += 4;
     }
-    if (features_.ply_colors) set_args(k, next++, scene_.ply_colors());
+    if (features_.ply_colors) next = scene_.bind_ply_colors(k, next);
     set_args(k, next, aov_.cl(), ply_list_.cl(), queue_counts_.cl(), kHits);
   }
   if (kernels_.contains("shade_fibre")) {
     auto& k = kernel("shade_fibre");
-    next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1)));
+    next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1), features_.procedural));
     set_args(k, next, scene_.frames(), uint32_t(features_.normals), scene_.fibre_materials());
     next += 3;
-    if (features_.ply_colors) set_args(k, next++, scene_.ply_colors());
+    if (features_.ply_colors) next = scene_.bind_ply_colors(k, next);
     set_args(k, next, aov_.cl(), fibre_list_.cl(), queue_counts_.cl(), kHits + 3);
   }
   if (kernels_.contains("shade_surface")) {
@@ -144,7 +144,7 @@ void Wavefront::build_programs() {
   }
   if (features_.lights) {
     auto& k = kernel("connect");
-    next = scene_.bind_scene(k, path(k, 1));
+    next = scene_.bind_scene(k, path(k, 1), features_.procedural);
     set_args(k, next, shadow_list_.cl(), queue_counts_.cl());
   }
   kernel("accumulate").setArg(1, camera_);
@@ -224,7 +224,7 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
       }
     const uint32_t shaded = kShaded[side];
     compact(live, count_index, shaded, bound, active_[1 - side], shadow_list_, spare_list_);
-    if (features_.lights) {
+    if (features_.lights && scene_.samples_lights()) {
       if (recording) keep_rays(frame, RayKind::shadow, shadow_list_, shaded + 1, depth);
       launch_connect(shaded + 1, depth, bound);
     }

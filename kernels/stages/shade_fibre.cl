@@ -16,8 +16,9 @@
 #include "stages/store_rays.clh"
 
 #ifdef W_HAS_PLY_COLORS
-#define W_COLOR_PARAMS __global const uint *colors,
-#define W_COLOR_ARGS colors,
+/* Segments from color_count on have the colour of their material. */
+#define W_COLOR_PARAMS __global const uint *colors, uint color_count,
+#define W_COLOR_ARGS colors, color_count,
 #else
 #define W_COLOR_PARAMS
 #define W_COLOR_ARGS
@@ -31,7 +32,7 @@ W_CALL void w_shade_fibre(const WFrame* frame, W_PATH_PARAMS, const WScene* scen
   const WPlySurface s = w_ply_surface(scene, frames, &ray, &h, normals);
   WFibreMaterial material = materials[s.material & ~W_MATERIAL_FIBRE];
 #ifdef W_HAS_PLY_COLORS
-  if (colors[s.segment] & W_COLOR_GIVEN)
+  if (s.segment < color_count && (colors[s.segment] & W_COLOR_GIVEN))
     material.transmit.xyz =
         w_float3(w_ply_color(colors[s.segment])) * (material.transmit.w != 0.0f ? material.transmit.xyz : 1.0f);
 #endif

@@ -21,9 +21,11 @@ static inline w_real3 w_leave(const WPlySurface* s, w_real3 out, w_real3 middle,
 }
 
 #ifdef W_HAS_PLY_COLORS
-#define W_COLOR_PARAMS __global const uint *colors,
-#define W_COLOR_ARGS colors,
-#define W_COLORED(material, segment) w_ply_colored(material, colors[segment])
+/* Segments from color_count on have the colour of their material. */
+#define W_COLOR_PARAMS __global const uint *colors, uint color_count,
+#define W_COLOR_ARGS colors, color_count,
+#define W_COLORED(material, segment) \
+  w_ply_colored(material, (segment) < color_count ? colors[segment] : 0u)
 #else
 #define W_COLOR_PARAMS
 #define W_COLOR_ARGS
