@@ -1,8 +1,8 @@
 // What each level of the accuracy options costs per sample: bench/results/prices.md, whose figures `wale plan` quotes.
 //   prices_bench SCENE [ROUNDS] [ROWS]
-// writes the table, and to the file ROWS what host/price_class.cpp includes. Time: CPU seconds of all kernels, all threads,
-// per sample; in every round the scene's levels one after the other, each over the scene as it is, rendered right before
-// it; median over the rounds. Compiling, knitting and uploading are not counted.
+// writes the table, and to the file ROWS what host/price_class.cpp includes. Time: CPU seconds of all kernels, all
+// threads, per sample; in every round the scene's levels one after the other, each over the scene as it is, rendered
+// right before it; median over the rounds. Compiling, knitting and uploading are not counted.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,8 +29,8 @@ struct Subject {
   SceneDevice on_device;
   Subject(const Device& device, Scene s)
       : scene(std::move(s)),
-        world(build_world(scene, {[](const auto& f) { return read_mesh(f); },
-                                  [](const auto& f) { return read_image(f, true); }})),
+        world(build_world(
+            scene, {[](const auto& f) { return read_mesh(f); }, [](const auto& f) { return read_image(f, true); }})),
         on_device(device, world, local_stage(scene.integrator)) {}
 
   double seconds_per_sample(const Device& device) const {
@@ -107,7 +107,8 @@ int main(int argc, char** argv) {
     }
     const double times = bench::median(row.ratios), over = times / cheapest(rows, row.option);
     const auto [least, greatest] = std::minmax_element(row.ratios.begin(), row.ratios.end());
-    fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.2f} to {:.2f} |\n", row.option, row.level, over, times, *least, *greatest);
+    fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.2f} to {:.2f} |\n", row.option, row.level, over, times, *least,
+               *greatest);
     figures += fmt::format("{{\"{}\", \"{}\", {:.2f}}},\n", row.option, row.level, over);
   }
   if (argc > 3) std::ofstream(argv[3]) << "// Written by bench/prices.cpp; see bench/results/prices.md.\n" << figures;

@@ -1,10 +1,11 @@
 // Kernels built for what a scene calls for against kernels with everything built in (`--features all`): the same
 // picture, time per vertex of a path, compile time, machine code and stack. Usage:
 //   specialised_bench [-r REPEATS] SCENE...
-// writes the tables of bench/results/specialised.md, the last one for the first scene. Times: CPU seconds of all threads, the two kinds of programs in
-// turn, median of the ratios within each turn. Compiling: CPU seconds of a fresh process with an empty cache of PoCL
-// until the first picture is done, less those of the picture once more. Code and stack: of the largest machine code that
-// the cache then holds for a kernel; on devices that say so, the kernel's private memory.
+// writes the tables of bench/results/specialised.md, the last one for the first scene. Times: CPU seconds of all
+// threads, the two kinds of programs in turn, median of the ratios within each turn. Compiling: CPU seconds of a fresh
+// process with an empty cache of PoCL until the first picture is done, less those of the picture once more. Code and
+// stack: of the largest machine code that the cache then holds for a kernel; on devices that say so, the kernel's
+// private memory.
 #include <fmt/format.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -42,8 +43,8 @@ struct Loaded {
   World world;
   explicit Loaded(const std::string& file)
       : scene(read_scene(file)),
-        world(build_world(scene, {[](const auto& f) { return read_mesh(f); },
-                                  [](const auto& f) { return read_image(f, true); }})) {}
+        world(build_world(
+            scene, {[](const auto& f) { return read_mesh(f); }, [](const auto& f) { return read_image(f, true); }})) {}
 };
 
 RenderOptions options_of(const Features& also) {
@@ -90,8 +91,8 @@ Code code_of(const std::filesystem::path& object) {
   const std::string sections = output_of("objdump -h -j .text '" + object.string() + "' 2>/dev/null");
   if (const auto at = sections.find(".text"); at != std::string::npos)
     code.bytes = std::stoul(sections.substr(at + 5), nullptr, 16);
-  const std::string frames =
-      output_of("objdump -d --no-show-raw-insn '" + object.string() + "' 2>/dev/null | grep -o 'sub *\\$0x[0-9a-f]*,%rsp'");
+  const std::string frames = output_of("objdump -d --no-show-raw-insn '" + object.string() +
+                                       "' 2>/dev/null | grep -o 'sub *\\$0x[0-9a-f]*,%rsp'");
   for (size_t at = frames.find("$0x"); at != std::string::npos; at = frames.find("$0x", at + 1)) {
     const size_t frame = std::stoul(frames.substr(at + 3), nullptr, 16);
     if (frame < (1u << 24)) code.stack = std::max(code.stack, frame);  // a frame is given back by adding 2^64 - n
@@ -183,8 +184,8 @@ std::string kernel_rows(const std::string& scene, const Times& times, const std:
 
 // What the driver says that a kernel's work-item keeps outside of registers, bytes.
 uint64_t private_bytes(const Device& device, const Loaded& loaded, bool all, const char* kernel, const char* file) {
-  const Features features = features_of(device.traits(), loaded.world, loaded.scene.integrator,
-                                       options_of(all_or_nothing(all)));
+  const Features features =
+      features_of(device.traits(), loaded.world, loaded.scene.integrator, options_of(all_or_nothing(all)));
   const cl::Kernel built(build_program(device, file, features.options()), kernel);
   return built.getWorkGroupInfo<CL_KERNEL_PRIVATE_MEM_SIZE>(device.id());
 }
@@ -192,9 +193,12 @@ uint64_t private_bytes(const Device& device, const Loaded& loaded, bool all, con
 // What each structure costs a scene that has none of it.
 void print_alone(const Device& device, const std::string& file, int repeats) {
   const std::vector<std::pair<const char*, bool Features::*>> members = {
-      {"single fibres", &Features::fibres},          {"procedural leaves", &Features::procedural},
-      {"triangles", &Features::triangles},           {"spheres", &Features::spheres},
-      {"fibre maps", &Features::detail},             {"colours that vary", &Features::ply_colors},
+      {"single fibres", &Features::fibres},
+      {"procedural leaves", &Features::procedural},
+      {"triangles", &Features::triangles},
+      {"spheres", &Features::spheres},
+      {"fibre maps", &Features::detail},
+      {"colours that vary", &Features::ply_colors},
       {"features of the first hit", &Features::aovs}};
   const Loaded loaded(file);
   fmt::print("\nBuilt in beside what {} calls for, time with it over time without:\n\n", file);
@@ -247,7 +251,9 @@ int main(int argc, char** argv) {
                             private_bytes(device, loaded, false, kernel, source),
                             private_bytes(device, loaded, true, kernel, source));
   }
-  fmt::print("\n| scene | kernel | time, all / needed | code, KiB, needed | stack, bytes, needed | code, all | stack, all |\n");
+  fmt::print(
+      "\n| scene | kernel | time, all / needed | code, KiB, needed | stack, bytes, needed | code, all | stack, all "
+      "|\n");
   fmt::print("|---|---|---|---|---|---|---|\n{}", rows);
   if (!words.empty()) print_alone(device, words.front(), repeats);
   return same ? 0 : 1;

@@ -54,8 +54,8 @@ void drop_pass_through(World& world) {
 
 std::optional<std::string> ends_at_first_hit(const World& world) {
   if (!world.lights.any()) return "nothing that shines can be seen";
-  const bool curves = std::any_of(world.fabrics.begin(), world.fabrics.end(),
-                                  [](const Fabric& f) { return f.report.segments > 0; });
+  const bool curves =
+      std::any_of(world.fabrics.begin(), world.fabrics.end(), [](const Fabric& f) { return f.report.segments > 0; });
   const auto& surfaces = world.surface_materials;
   const bool scatters = std::any_of(surfaces.begin(), surfaces.end(), [](const WSurfaceMaterial& m) {
     return m.kind != 0 || m.color.x > 0 || m.color.y > 0 || m.color.z > 0;

@@ -81,7 +81,7 @@ std::string plan_text(const Plan& plan) {
   out += fmt::format("kernel options\n  {}\naccuracy (see `wale cost`)\n", plan.options);
   for (const Plan::Accuracy& a : plan.accuracy)
     out += fmt::format("  {:<16} {:<12} {}\n", a.option, a.level,
-                       a.price.times > 0 ? fmt::format("{}: {:.2g} times the cheapest level's time ({})", a.price.name,
+                       a.price.times > 0 ? fmt::format("{}: {:.2f} times the cheapest level's time ({})", a.price.name,
                                                        a.price.times, a.price.source)
                                          : a.price.name);
   out += "buffers\n";
@@ -90,16 +90,11 @@ std::string plan_text(const Plan& plan) {
 }
 
 std::string plan_json(const Plan& plan) {
-  Json json{{"features", Json::array()},
-            {"dropped", Json::array()},
-            {"programs", Json::array()},
-            {"options", plan.options},
-            {"accuracy", Json::array()},
-            {"buffers", plan.buffers},
+  Json json{{"features", Json::array()}, {"dropped", Json::array()},  {"programs", Json::array()},
+            {"options", plan.options},   {"accuracy", Json::array()}, {"buffers", plan.buffers},
             {"bytes", plan.bytes()}};
   for (const Plan::Feature& f : plan.features)
-    json["features"].push_back(
-        {{"feature", f.feature}, {"used", f.used}, {"built", f.built}, {"because", f.because}});
+    json["features"].push_back({{"feature", f.feature}, {"used", f.used}, {"built", f.built}, {"because", f.because}});
   for (const Dropped& d : plan.dropped) json["dropped"].push_back({{"what", d.what}, {"because", d.because}});
   for (const Plan::Program& p : plan.programs)
     json["programs"].push_back({{"file", p.file},

@@ -28,7 +28,7 @@ struct Plan {
   std::vector<Feature> features;
   std::vector<Dropped> dropped;  ///< what the scene has and what cannot matter
   std::vector<Program> programs;
-  std::string options;  ///< of the kernels' compiler
+  std::string options;                      ///< of the kernels' compiler
   std::map<std::string, uint64_t> buffers;  ///< bytes on the device
   std::vector<Accuracy> accuracy;
 

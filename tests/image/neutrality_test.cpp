@@ -1,5 +1,5 @@
-// A picture depends on what the scene holds, not on what its kernels could do besides: structure that is built in and not
-// called for changes no bit of it, and the program that a scene's kernels are is its structure's alone.
+// A picture depends on what the scene holds, not on what its kernels could do besides: structure that is built in and
+// not called for changes no bit of it, and the program that a scene's kernels are is its structure's alone.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,8 +46,7 @@ size_t different_values(const Image& a, const Image& b) {
   size_t different = a.width != b.width || a.height != b.height || common < 6;
   for (int y = 0; y < a.height && !different; ++y)
     for (int x = 0; x < a.width; ++x)
-      for (size_t c = 0; c < common; ++c)
-        different += std::memcmp(a.at(x, y) + c, b.at(x, y) + c, sizeof(float)) != 0;
+      for (size_t c = 0; c < common; ++c) different += std::memcmp(a.at(x, y) + c, b.at(x, y) + c, sizeof(float)) != 0;
   return different;
 }
 
