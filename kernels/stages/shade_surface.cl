@@ -71,7 +71,7 @@ W_CALL void w_shade_surface(const WFrame* frame, W_PATH_PARAMS, const WLights* l
   // Rounding of the hit: a few ulps of the largest coordinate and of the way travelled.
   const float reach = fmax(fmax(fabs(p.x), fabs(p.y)), fmax(fabs(p.z), t));
   const float3 lift = n_geo * (reach * 4e-7f);
-  const WSampler sampler = w_sampler(w_slot_pixel(frame, slot), w_slot_sample(frame, slot), frame->seed);
+  const WSampler sampler = w_sampler(w_slot_pixel(frame, wave_tiles, slot), w_slot_sample(frame, slot), frame->seed);
   const float4 u = w_sample4(&sampler, W_SET_SCATTER(depth));
   const float3 wv = -d;
 
