@@ -6,11 +6,10 @@
 #include <cmath>
 #include <ctime>
 
-#include "geom/base_mesh.h"
 #include "geom/error.h"
 #include "host/error_goal.h"
-#include "host/render.h"
 #include "tests/image/actual_error.h"
+#include "tests/image/picture.h"
 
 namespace wale {
 namespace {
@@ -19,19 +18,15 @@ using test::ActualError;
 
 double cpu_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
-// A scene that is knitted once and rendered often.
+// One scene and its pictures, with the processor time that each takes.
 class Bench {
  public:
   Bench(const std::string& file, int size, const std::vector<std::string>& set)
-      : device_(Device::open()),
-        scene_([&] {
+      : studio_(test::device(), [&] {
           Scene scene = read_scene(file, set);
           scene.film.width = scene.film.height = size;
           return scene;
-        }()),
-        world_(build_world(scene_, Loaders{[](const auto& name) { return read_mesh(name); },
-                                           [](const auto& name) { return read_image(name, true); }})),
-        on_device_(device_, world_, local_stage(scene_.integrator)) {}
+        }()) {}
 
   struct Taken {
     Rendered rendered;
@@ -41,20 +36,15 @@ class Bench {
     RenderOptions options;
     options.error = error;
     options.spp = spp;
-    IntegratorScene integrator = scene_.integrator;
-    integrator.seed = seed;
     double start = 0;
     options.ready = [&] { start = cpu_seconds(); };  // programs are compiled
-    Taken taken{render(device_, world_, on_device_, integrator, options), 0};
+    Taken taken{studio_.take(options, seed), 0};
     taken.cpu = cpu_seconds() - start;
     return taken;
   }
 
  private:
-  Device device_;
-  Scene scene_;
-  World world_;
-  SceneDevice on_device_;
+  test::Studio studio_;
 };
 
 struct Arguments {

@@ -10,31 +10,8 @@ namespace {
 
 constexpr double kFloorShare = 1.0 / 20, kBrightShare = 1.0 / 20;
 
-double luminance(const w_float4& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
-
-struct Pixel {
-  double samples = 0, mean = 0, variance = 0;  ///< variance of the mean
-  int scrambles = 0;                           ///< that have samples
-};
-
-// As develop() (host/film.cpp), of the luminance: its noise is not the sum of the channels', which go together.
-Pixel pixel_of(std::span<const w_float4> scrambles) {
-  Pixel p;
-  for (const w_float4& s : scrambles) {
-    p.mean += luminance(s);
-    p.samples += s.w;
-    p.scrambles += s.w > 0;
-  }
-  if (p.samples == 0) return p;
-  p.mean /= p.samples;
-  if (p.scrambles < 2) return p;
-  for (const w_float4& s : scrambles) {
-    if (s.w == 0) continue;
-    const double off = s.w / p.samples * (luminance(s) / s.w - p.mean);
-    p.variance += off * off;
-  }
-  p.variance *= double(p.scrambles) / (p.scrambles - 1);
-  return p;
+PixelStatistics luminance(std::span<const w_float4> scrambles) {
+  return pixel_statistics(scrambles, {0.2126, 0.7152, 0.0722});
 }
 
 }  // namespace
@@ -43,7 +20,7 @@ double tile_error(std::span<const w_float4> sums, double floor) {
   double sum = 0;
   size_t pixels = 0;
   for (size_t i = 0; i + kScrambles <= sums.size(); i += kScrambles) {
-    const Pixel p = pixel_of(sums.subspan(i, kScrambles));
+    const PixelStatistics p = luminance(sums.subspan(i, kScrambles));
     if (p.samples == 0) continue;
     if (p.scrambles < 2) return std::numeric_limits<double>::infinity();
     ++pixels;
@@ -58,7 +35,7 @@ double tile_luminance(std::span<const w_float4> sums) {
   double sum = 0;
   size_t pixels = 0;
   for (size_t i = 0; i + kScrambles <= sums.size(); i += kScrambles) {
-    const Pixel p = pixel_of(sums.subspan(i, kScrambles));
+    const PixelStatistics p = luminance(sums.subspan(i, kScrambles));
     if (p.samples == 0) continue;
     sum += p.mean;
     ++pixels;
