@@ -57,8 +57,9 @@ std::string name_of(const std::string& file) { return std::filesystem::path(file
 
 // Actual error beside the goal.
 void goal(const Arguments& args) {
-  fmt::print("| scene | actual, all tiles | actual, sampled tiles | worst tile | estimated: worst, median | missed | "
-             "samples: least, mean, most | CPU s |\n|---|---|---|---|---|---|---|---|\n");
+  fmt::print(
+      "| scene | actual, all tiles | actual, sampled tiles | worst tile | estimated: worst, median | missed | "
+      "samples: least, mean, most | CPU s |\n|---|---|---|---|---|---|---|---|\n");
   for (const auto& file : args.scenes) {
     const Bench bench(file, args.size, args.set);
     const auto taken = bench.take(args.error, args.limit, 1);
@@ -74,16 +75,17 @@ void goal(const Arguments& args) {
         sampled.push_back(squared[t]);
     const ActualError all = test::summary(squared), some = sampled.empty() ? ActualError{} : test::summary(sampled);
     fmt::print("| {} | {:.4f} | {:.4f} ({}) | {:.4f} | {:.4f}, {:.4f} | {} of {} | {}, {:.0f}, {} | {:.1f} |\n",
-               name_of(file), all.rms, some.rms, sampled.size(), all.worst, r.worst, r.median, r.missed, r.tiles, r.least,
-               r.mean, r.most, taken.cpu);
+               name_of(file), all.rms, some.rms, sampled.size(), all.worst, r.worst, r.median, r.missed, r.tiles,
+               r.least, r.mean, r.most, taken.cpu);
     std::fflush(stdout);
   }
 }
 
 // Mean over many seeds against equal samples everywhere.
 void bias(const Arguments& args) {
-  fmt::print("| scene | goal | seeds | mean samples | bias of the picture | its standard error | largest of a tile, in "
-             "standard errors | expected by chance |\n|---|---|---|---|---|---|---|---|\n");
+  fmt::print(
+      "| scene | goal | seeds | mean samples | bias of the picture | its standard error | largest of a tile, in "
+      "standard errors | expected by chance |\n|---|---|---|---|---|---|---|---|\n");
   for (const auto& file : args.scenes) {
     const Bench bench(file, args.size, args.set);
     const int columns = (args.size + 7) / 8;
@@ -125,16 +127,17 @@ void bias(const Arguments& args) {
     const double mean = all / n;
     fmt::print("| {} | {:g} | {} | {:.0f} | {:+.3f} % | {:.3f} % | {:.1f} of {} tiles | {:.1f} |\n", name_of(file),
                args.error, args.seeds, samples, 100 * mean / whole,
-               100 * std::sqrt((all_square / n - mean * mean) / (n - 1)) / whole,
-               worst, tiles, std::sqrt(2 * std::log(double(tiles))));
+               100 * std::sqrt((all_square / n - mean * mean) / (n - 1)) / whole, worst, tiles,
+               std::sqrt(2 * std::log(double(tiles))));
     std::fflush(stdout);
   }
 }
 
 // The least equal samples whose worst tile is as good.
 void sooner(const Arguments& args) {
-  fmt::print("| scene | goal | adaptive: mean samples, CPU s, worst tile | equal: samples, CPU s, worst tile | samples | "
-             "CPU time |\n|---|---|---|---|---|---|\n");
+  fmt::print(
+      "| scene | goal | adaptive: mean samples, CPU s, worst tile | equal: samples, CPU s, worst tile | samples | "
+      "CPU time |\n|---|---|---|---|---|---|\n");
   for (const auto& file : args.scenes) {
     const Bench bench(file, args.size, args.set);
     bench.take(0, 8, 7);  // first launches

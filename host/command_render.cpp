@@ -34,8 +34,10 @@ void apply_size(const std::string& size, FilmScene& film) {
 int most_samples(const RenderArgs& args, const IntegratorScene& integrator) {
   constexpr int kTowardsError = 65536, kTowardsTime = 1 << 20;
   if (args.error > 0 && args.spp > 0 && args.spp < int(kScrambles))
-    user_error("--error {:g} with --spp {}: noise is measured between {} samples and more of a pixel; valid: --spp {} or "
-               "more, or none", args.error, args.spp, kScrambles, kScrambles);
+    user_error(
+        "--error {:g} with --spp {}: noise is measured between {} samples and more of a pixel; valid: --spp {} or "
+        "more, or none",
+        args.error, args.spp, kScrambles, kScrambles);
   if (args.spp > 0) return args.spp;
   return args.error > 0 ? kTowardsError : args.seconds > 0 ? kTowardsTime : integrator.spp;
 }

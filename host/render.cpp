@@ -167,8 +167,8 @@ class Job {
     std::vector<double> values;
     for (size_t i = 0; i < tiles.size();) {
       const size_t end = run_end(i, tiles.size(), [&](size_t k) { return tiles[k]; });
-      const PixelSums sums = waves_[*list_->owner(tiles[i])]->film().read(tiles[i] * kTilePixels,
-                                                                          uint32_t(end - i) * kTilePixels);
+      const PixelSums sums =
+          waves_[*list_->owner(tiles[i])]->film().read(tiles[i] * kTilePixels, uint32_t(end - i) * kTilePixels);
       constexpr size_t kValues = kTilePixels * kScrambles;
       for (size_t k = 0; k < end - i; ++k) values.push_back(of(std::span(sums.radiance).subspan(k * kValues, kValues)));
       i = end;

@@ -30,9 +30,9 @@ std::string goal_text(const SamplingReport& report) {
   if (report.error <= 0) return text;
   text += fmt::format("; {:g} was asked for", report.error);
   if (r.missed == 0) return text;
-  return text + fmt::format(" and missed in {} of {} tiles {}", r.missed, r.tiles,
-                            report.stopped ? "when it was stopped"
-                                           : fmt::format("at the limit of {} samples", report.spp));
+  return text +
+         fmt::format(" and missed in {} of {} tiles {}", r.missed, r.tiles,
+                     report.stopped ? "when it was stopped" : fmt::format("at the limit of {} samples", report.spp));
 }
 
 void add_sampling(nlohmann::ordered_json& stats, const SamplingReport& report) {

@@ -27,10 +27,10 @@ double error_floor(std::vector<double> luminances);
 
 /// What a picture's samples amount to.
 struct Reached {
-  double floor = 0;                      ///< luminance that errors were compared with at least
-  double worst = 0, p95 = 0, median = 0; ///< of the tiles' errors
-  uint32_t tiles = 0, missed = 0;        ///< tiles; those whose error is above the goal, 0 without one
-  uint32_t least = 0, most = 0;          ///< samples per pixel
+  double floor = 0;                       ///< luminance that errors were compared with at least
+  double worst = 0, p95 = 0, median = 0;  ///< of the tiles' errors
+  uint32_t tiles = 0, missed = 0;         ///< tiles; those whose error is above the goal, 0 without one
+  uint32_t least = 0, most = 0;           ///< samples per pixel
   double mean = 0;
 };
 

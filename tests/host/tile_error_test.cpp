@@ -16,9 +16,7 @@ namespace {
 using Sums = std::vector<w_float4>;
 constexpr size_t kValues = kTilePixels * kScrambles;
 
-w_float4 grey(double value, double samples) {
-  return {float(value), float(value), float(value), float(samples)};
-}
+w_float4 grey(double value, double samples) { return {float(value), float(value), float(value), float(samples)}; }
 
 Sums tile_of(const std::function<w_float4(size_t pixel, size_t scramble)>& value) {
   Sums sums;
@@ -56,7 +54,8 @@ TEST(TileError, IsLuminancesNotAChannels) {
 
 TEST(TileError, ExpectedValueIsTheStandardError) {
   std::mt19937 random(11);
-  for (const auto& counts : {std::vector<int>(8, 40), {42, 42, 42, 41, 41, 41, 41, 41}, {90, 90, 90, 90, 10, 10, 10, 10}}) {
+  for (const auto& counts :
+       {std::vector<int>(8, 40), {42, 42, 42, 41, 41, 41, 41, 41}, {90, 90, 90, 90, 10, 10, 10, 10}}) {
     double sum = 0, samples = 0;
     for (const int n : counts) samples += n;
     constexpr int kTiles = 300;

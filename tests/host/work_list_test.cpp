@@ -193,10 +193,11 @@ TEST(WorkList, BlocksThatGoOnAreGatheredIntoFullWaves) {
     s.pass(all, 16);
     s.waves.clear();
     s.pass(few, 24);
-    if (devices.size() == 1) EXPECT_EQ(s.waves, (std::vector<uint32_t>{32, 32, 32, 8}));
+    if (devices.size() == 1) {
+      EXPECT_EQ(s.waves, (std::vector<uint32_t>{32, 32, 32, 8}));
+    }
     s.pass({7, 62}, 1000);
-    for (uint32_t b = 0; b < 64; ++b)
-      EXPECT_EQ(s.done(b), b == 7 || b == 62 ? 1000u : b % 5 == 1 ? 24u : 16u) << b;
+    for (uint32_t b = 0; b < 64; ++b) EXPECT_EQ(s.done(b), b == 7 || b == 62 ? 1000u : b % 5 == 1 ? 24u : 16u) << b;
   }
 }
 

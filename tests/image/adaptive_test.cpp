@@ -15,6 +15,7 @@ namespace wale::test {
 namespace {
 
 constexpr size_t kSamplesChannel = 6;
+constexpr double kGoal = 0.12;  // some tiles reach it at the first checkpoint, others at several later ones
 
 Scene everything(int size) {
   const TemporaryFolder folder;
@@ -42,7 +43,7 @@ size_t different_at(const Image& picture, float samples, const Image& other) {
 
 TEST(Adaptive, EveryTileHasTheNextSamplesOfItsSequence) {
   const Studio studio(device(), everything(36));  // the tiles at two borders are half outside
-  RenderOptions options = towards(0.2);
+  RenderOptions options = towards(kGoal);
   options.aovs = true;
   const Rendered adaptive = studio.take(options, 3);
   std::set<float> counts;
@@ -61,7 +62,7 @@ TEST(Adaptive, EveryTileHasTheNextSamplesOfItsSequence) {
 
 TEST(Adaptive, EveryPoolGivesTheSameBytes) {
   const Studio studio(device(), everything(36));
-  RenderOptions options = towards(0.2);
+  RenderOptions options = towards(kGoal);
   const Image expected = studio.take(options, 3).image;
   EXPECT_NE(different_pixels(expected, studio.take(options, 4).image), 0u);
   for (const uint32_t pool : {65u, 1000u, 4099u}) {
@@ -79,7 +80,7 @@ TEST(Adaptive, TwoDevicesGiveTheBytesOfOne) {
   std::vector<Image> images;
   for (const char* devices : {"1", "1,0"}) {
     const auto picture = folder / (std::string(devices) + ".exr");
-    const Outcome run = run_wale({"render", scene.string(), "-o", picture.string(), "--error", "0.25", "--quiet",
+    const Outcome run = run_wale({"render", scene.string(), "-o", picture.string(), "--error", "0.12", "--quiet",
                                   "--device", devices, "--set", "integrator.pool=1024"},
                                  {two}, 300);
     ASSERT_EQ(run.status, 0) << run.err;
@@ -89,20 +90,21 @@ TEST(Adaptive, TwoDevicesGiveTheBytesOfOne) {
 }
 
 TEST(Adaptive, TheActualErrorIsTheOneAskedFor) {
-  const Studio studio(device(), everything(48));
-  constexpr double kGoal = 0.1;
-  const Rendered r = studio.take(towards(kGoal), 1);
-  const Image a = studio.take(equal_samples(512), 1001).image, b = studio.take(equal_samples(512), 1002).image;
+  const Studio studio(device(), everything(40));
+  constexpr double kFine = 0.08;
+  const Rendered r = studio.take(towards(kFine), 1);
+  const Image a = studio.take(equal_samples(384), 1001).image, b = studio.take(equal_samples(384), 1002).image;
   const auto squared = actual_tile_errors(r.image, a, b, r.reached.floor);
   std::vector<double> sampled;
   for (size_t t = 0; t < squared.size(); ++t)
-    if (r.image.at(int(t % 6) * 8, int(t / 6) * 8)[kSamplesChannel] > float(r.reached.least)) sampled.push_back(squared[t]);
-  ASSERT_GT(sampled.size(), 12u);
-  EXPECT_LE(r.reached.worst, kGoal);
+    if (r.image.at(int(t % 5) * 8, int(t / 5) * 8)[kSamplesChannel] > float(r.reached.least))
+      sampled.push_back(squared[t]);
+  ASSERT_GT(sampled.size(), 8u);
+  EXPECT_LE(r.reached.worst, kFine);
   EXPECT_EQ(r.reached.missed, 0u);
-  EXPECT_LT(summary(squared).worst, kGoal * tolerance::kFactorOfGoal);
-  EXPECT_LT(summary(sampled).rms, kGoal * tolerance::kFactorOfGoal);
-  EXPECT_GT(summary(sampled).rms, kGoal / tolerance::kFactorOfGoal) << "more samples than were needed";
+  EXPECT_LT(summary(squared).worst, kFine * tolerance::kFactorOfGoal);
+  EXPECT_LT(summary(sampled).rms, kFine * tolerance::kFactorOfGoal);
+  EXPECT_GT(summary(sampled).rms, kFine / tolerance::kFactorOfGoal) << "more samples than were needed";
 }
 
 TEST(Adaptive, TheMeanOfManyPicturesIsTheTruth) {
@@ -112,7 +114,9 @@ TEST(Adaptive, TheMeanOfManyPicturesIsTheTruth) {
   const size_t values = truth.pixels.size(), stride = truth.channels.size();
   std::vector<double> sum(values), square(values), told(values);
   for (int seed = 0; seed < kPictures; ++seed) {
-    const Image image = studio.take(towards(0.3), unsigned(seed)).image;
+    const Rendered r = studio.take(towards(kGoal), unsigned(seed));
+    EXPECT_GT(r.reached.most, r.reached.least);
+    const Image& image = r.image;
     for (size_t i = 0; i < values; i += stride)
       for (size_t c = i; c < i + 3; ++c) {
         sum[c] += image.pixels[c];
@@ -134,18 +138,13 @@ TEST(Adaptive, TheMeanOfManyPicturesIsTheTruth) {
 
 // A small cloth before nothing: most tiles are empty.
 TEST(Adaptive, SoonerThanEqualSamplesWhereMuchIsEmpty) {
-  const TemporaryFolder folder;
-  const Studio studio(device(), read_scene(folder.write("scene.json", R"({
-    "wale": 1, "units": "mm", "film": {"size": [64, 64]},
-    "camera": {"position": [0, 0, 100], "look_at": [6, 4, 0], "fov": 30},
-    "fabrics": [{"name": "cloth", "mesh": {"generator": "swatch", "width": 20, "height": 20},
-                 "pattern": {"builtin": "stockinette"}, "gauge": {"wales": 30}}],
-    "lights": [{"type": "sphere", "position": [-40, 30, 60], "radius": 6, "radiance": 60}]})")));
-  constexpr double kGoal = 0.2;
-  const Rendered adaptive = studio.take(towards(kGoal), 1);
-  EXPECT_LE(adaptive.reached.worst, kGoal);
+  const std::string file = std::string(WALE_SOURCE_DIR) + "/scenes/check/sparse.json";
+  const Studio studio(device(), read_scene(file, {"film.size=[64,64]"}));
+  constexpr double kRough = 0.2;
+  const Rendered adaptive = studio.take(towards(kRough), 1);
+  EXPECT_LE(adaptive.reached.worst, kRough);
   const int half_again = int(std::ceil(1.5 * adaptive.reached.mean / 8)) * 8;
-  EXPECT_GT(studio.take(equal_samples(half_again), 1).reached.worst, kGoal)
+  EXPECT_GT(studio.take(equal_samples(half_again), 1).reached.worst, kRough)
       << "equal samples got there with " << half_again << " samples per pixel, " << adaptive.reached.mean
       << " were enough on average";
 }
