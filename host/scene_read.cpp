@@ -40,9 +40,13 @@ MeshSource mesh_of(const JsonNode& node) {
     mesh.file = node["file"].text;
   } else {
     mesh.generator = node["generator"].text;
-    const std::pair<const char*, double*> sizes[] = {{"width", &mesh.width},   {"height", &mesh.height},
-                                                     {"radius", &mesh.radius}, {"thickness", &mesh.thickness},
-                                                     {"size", &mesh.size},     {"sphere_radius", &mesh.sphere_radius}};
+    const std::pair<const char*, double*> sizes[] = {{"width", &mesh.width},
+                                                     {"height", &mesh.height},
+                                                     {"radius", &mesh.radius},
+                                                     {"thickness", &mesh.thickness},
+                                                     {"length", &mesh.length},
+                                                     {"size", &mesh.size},
+                                                     {"sphere_radius", &mesh.sphere_radius}};
     for (const auto& [key, value] : sizes)
       if (node.has(key)) *value = number_of(node, key);
     mesh.nu = integer_of(node, "nu");
@@ -99,6 +103,9 @@ IntegratorScene integrator_of(const JsonNode& node) {
   out.light_sampling = node["light_sampling"].text;
   out.ply_lobes = node["ply_lobes"].text;
   out.local_stage = node["local_stage"].text;
+  out.ply_shadows = node["ply_shadows"].text;
+  out.light_choice = node["light_choice"].text;
+  out.math = node["math"].text;
   out.lanes = integer_of(node, "lanes");
   out.pool = static_cast<unsigned>(number_of(node, "pool"));
   out.seed = static_cast<unsigned>(number_of(node, "seed"));
