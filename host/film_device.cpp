@@ -105,15 +105,6 @@ void FilmDevice::write(uint32_t first, const PixelSums& sums) {
   }
 }
 
-std::vector<w_float4> radiance_of_tile(const FilmSums& film, uint32_t tile) {
-  std::vector<w_float4> sums(kTilePixels * kScrambles, w_float4{0, 0, 0, 0});
-  for (uint32_t i = 0; i < kTilePixels; ++i)
-    if (const auto pixel = row_pixel(film, tile * kTilePixels + i))
-      std::copy_n(film.radiance.begin() + std::ptrdiff_t(*pixel * kScrambles), kScrambles,
-                  sums.begin() + std::ptrdiff_t(i * kScrambles));
-  return sums;
-}
-
 void scatter(const PixelSums& sums, uint32_t first, FilmSums& film) {
   for (size_t i = 0; i < sums.radiance.size() / kScrambles; ++i) {
     const auto pixel = row_pixel(film, first + uint32_t(i));

@@ -59,9 +59,6 @@ class FilmDevice {
   cl::CommandQueue transfers_;
 };
 
-/// Sums of a tile's pixels out of the picture's rows, kScrambles a pixel; nothing for those outside of the picture.
-std::vector<w_float4> radiance_of_tile(const FilmSums& film, uint32_t tile);
-
 /// Puts the sums of pixels [first, ...) into the picture's rows.
 void scatter(const PixelSums& sums, uint32_t first, FilmSums& film);
 

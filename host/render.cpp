@@ -8,6 +8,7 @@
 #include "host/device_fault.h"
 #include "host/driver_crash.h"
 #include "host/error_goal.h"
+#include "host/shared_film.h"
 #include "host/stop.h"
 #include "host/work_list.h"
 
@@ -35,9 +36,6 @@ uint32_t block_size(uint32_t smallest_pool, uint64_t pixels, size_t devices) {
   const uint64_t tiles = std::min<uint64_t>(smallest_pool / kScrambles, pixels / (32 * devices)) / 64;
   return uint32_t(std::max<uint64_t>(1, tiles)) * 64;
 }
-
-// Pixels of the film that are read at once.
-constexpr uint32_t kReadPixels = 1 << 16;
 
 // Shares of a wave: less than the smallest is not worth starting before the time is up. Waves are planned for a part of
 // what is left, as a small wave takes longer per path than the one before, by which it is planned.
@@ -70,6 +68,9 @@ class Job {
     const uint32_t blocks = (pixels_ + block_pixels_ - 1) / block_pixels_;
     list_ = std::make_unique<WorkList>(blocks, options.error > 0 ? 0 : uint32_t(options.spp), uint32_t(devices.size()),
                                        options.seconds > 0);
+    std::vector<const FilmDevice*> films;
+    for (const auto& wave : waves_) films.push_back(&wave->film());
+    film_ = std::make_unique<SharedFilm>(std::move(films), *list_, pixels_, block_pixels_);
   }
 
   Rendered run(const World& world) {
@@ -89,9 +90,8 @@ class Job {
       result_.counts += share.counts;
     }
     const double origin[3] = {world.origin.x, world.origin.y, world.origin.z};
-    const FilmSums film = gather(world.camera.width, world.camera.height);
-    result_.reached = reached_by(film);
-    result_.image = develop(film, origin);
+    result_.reached = film_->reached(options_.error, floor_.value_or(0));
+    result_.image = develop(film_->gather(world.camera.width, world.camera.height, options_.aovs), origin);
     return std::move(result_);
   }
 
@@ -157,34 +157,9 @@ class Job {
         result_.stopped = true;
         return;
       }
-      if (!floor_) floor_ = error_floor(measure(goal.open(), tile_luminance));
-      goal.judge(measure(goal.open(), [&](auto sums) { return tile_error(sums, *floor_); }));
+      if (!floor_) floor_ = error_floor(film_->measure(goal.open(), tile_luminance));
+      goal.judge(film_->measure(goal.open(), [&](auto sums) { return tile_error(sums, *floor_); }));
     }
-  }
-
-  // A number of each of these tiles, from its sums.
-  std::vector<double> measure(const std::vector<uint32_t>& tiles,
-                              const std::function<double(std::span<const w_float4>)>& of) const {
-    std::vector<double> values;
-    for (size_t i = 0; i < tiles.size();) {
-      const size_t end = run_end(i, tiles.size(), [&](size_t k) { return tiles[k]; });
-      const PixelSums sums =
-          waves_[*list_->owner(tiles[i])]->film().read(tiles[i] * kTilePixels, uint32_t(end - i) * kTilePixels);
-      constexpr size_t kValues = kTilePixels * kScrambles;
-      for (size_t k = 0; k < end - i; ++k) values.push_back(of(std::span(sums.radiance).subspan(k * kValues, kValues)));
-      i = end;
-    }
-    return values;
-  }
-
-  // End of the run of blocks that lie one behind the other on one device, from entry i of a list of blocks on.
-  size_t run_end(size_t i, size_t count, const std::function<uint32_t(size_t)>& block) const {
-    const size_t most = i + kReadPixels / block_pixels_ + 1;
-    size_t end = i + 1;
-    while (end < std::min(count, most) && block(end) == block(end - 1) + 1 &&
-           list_->owner(block(end)) == list_->owner(block(i)))
-      ++end;
-    return end;
   }
 
   // Paths of the next wave: a full one, until what is left of the time is shorter; 0 when it is up.
@@ -235,38 +210,6 @@ class Job {
     if (progress_) progress_(fraction_);
   }
 
-  FilmSums gather(int width, int height) {
-    const size_t pixels = size_t(width) * size_t(height);
-    FilmSums film{width, height, std::vector<w_float4>(pixels * kScrambles, w_float4{0, 0, 0, 0}), {}, {}};
-    if (options_.aovs) {
-      film.aov.assign(pixels * 4, w_float4{0, 0, 0, 0});
-      film.ply.assign(pixels, W_NONE);
-    }
-    const size_t blocks = (pixels_ + block_pixels_ - 1) / block_pixels_;
-    for (size_t i = 0; i < blocks;) {
-      const size_t end = run_end(i, blocks, [](size_t k) { return uint32_t(k); });
-      const uint32_t first = uint32_t(i) * block_pixels_;
-      if (const auto owner = list_->owner(uint32_t(i)))
-        scatter(waves_[*owner]->film().read(first, pixels_in(uint32_t(i), uint32_t(end - i))), first, film);
-      i = end;
-    }
-    return film;
-  }
-
-  Reached reached_by(const FilmSums& film) const {
-    const uint32_t tiles = pixels_ / kTilePixels;
-    std::vector<double> errors(tiles), luminances(tiles);
-    std::vector<uint32_t> samples(tiles);
-    if (!floor_)
-      for (uint32_t t = 0; t < tiles; ++t) luminances[t] = tile_luminance(radiance_of_tile(film, t));
-    const double floor = floor_ ? *floor_ : error_floor(luminances);
-    for (uint32_t t = 0; t < tiles; ++t) {
-      errors[t] = tile_error(radiance_of_tile(film, t), floor);
-      samples[t] = list_->samples(t / (block_pixels_ / kTilePixels));
-    }
-    return reached(errors, samples, options_.error, floor);
-  }
-
   std::span<const RenderDevice> devices_;
   const RenderOptions& options_;
   const std::function<void(double)>& progress_;
@@ -277,6 +220,7 @@ class Job {
   double expected_ = 0, fraction_ = 0;    ///< samples that the goal will take; progress
   std::vector<std::unique_ptr<Wavefront>> waves_;
   std::unique_ptr<WorkList> list_;
+  std::unique_ptr<SharedFilm> film_;
   std::mutex mutex_;
   Rendered result_;
   Clock::time_point start_;
