@@ -13,6 +13,8 @@
 #include "host/rare_events.h"
 #include "host/rehearsal.h"
 #include "host/render.h"
+#include "host/sampling_report.h"
+#include "host/stats.h"
 #include "host/stop.h"
 
 namespace wale {
@@ -26,6 +28,18 @@ void apply_size(const std::string& size, FilmScene& film) {
     user_error("--size {}: expected WIDTHxHEIGHT, each 1 to 65536, for example 768x768", size);
   film.width = w;
   film.height = h;
+}
+
+// Samples per pixel at most: a goal decides itself where to stop.
+int most_samples(const RenderArgs& args, const IntegratorScene& integrator) {
+  constexpr int kTowardsError = 65536, kTowardsTime = 1 << 20;
+  if (args.error > 0 && args.spp > 0 && args.spp < int(kScrambles))
+    user_error(
+        "--error {:g} with --spp {}: noise is measured between {} samples and more of a pixel; valid: --spp {} or "
+        "more, or none",
+        args.error, args.spp, kScrambles, kScrambles);
+  if (args.spp > 0) return args.spp;
+  return args.error > 0 ? kTowardsError : args.seconds > 0 ? kTowardsTime : integrator.spp;
 }
 
 // The devices of a render and the scene on each of them.
@@ -128,7 +142,7 @@ Stats stats_of(const Scene& scene, const World& world, const std::vector<RenderD
   s.width = world.camera.width;
   s.height = world.camera.height;
   s.samples = r.counts.paths;
-  s.samples_per_pixel = r.samples;
+  s.samples_per_pixel = r.reached.mean;
   s.total_seconds = r.seconds;
   return s;
 }
@@ -140,6 +154,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   Scene scene = read_scene(args);
   if (!args.size.empty()) apply_size(args.size, scene.film);
   // Everything that can be refused is refused before the long work starts.
+  const int spp = most_samples(args, scene.integrator);
   bool aovs = false;
   for (const auto& output : args.outputs) {
     require_writable(output);
@@ -173,8 +188,8 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
     for (const auto& note : world.notes) fmt::print(stderr, "note: {}\n", note);
   start.step("knit");
   RenderOptions options;
-  options.spp = args.spp > 0 ? args.spp : scene.integrator.spp;
-  if (args.seconds > 0 && args.spp == 0) options.spp = 1 << 20;  // the clock decides
+  options.spp = spp;
+  options.error = args.error;
   options.seconds = args.seconds;
   options.aovs = aovs;
   options.also = args.also;
@@ -186,7 +201,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
     fmt::print(stderr, "note: {} joints bend too tightly to be warped where rays meet them: their fabrics are stored\n",
                tight);
   Progress bar("render", args.quiet);
-  const Rendered r = render(devices.list(), world, scene.integrator, options, [&](double f) {
+  Rendered r = render(devices.list(), world, scene.integrator, options, [&](double f) {
     if (!args.outputs.empty()) image_coder();  // if it cannot be loaded, now rather than when all is rendered
     bar.update(f);
   });
@@ -194,6 +209,8 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   start.step("programs", r.program_seconds);
   start.step("first wave", r.first_sample_seconds);
 
+  const SamplingReport sampling{options.spp, options.error, options.seconds, r.stopped, r.reached};
+  r.image.attributes = sampling_attributes(sampling);
   for (const auto& output : args.outputs) write_image(r.image, output, scene.film.exposure, scene.film.view);
   const Features features =
       features_of(devices.list().front().device->traits(), world, scene.integrator, options);
@@ -201,13 +218,15 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
     Stats stats = stats_of(scene, world, devices.list(), features, r, rehearsal.cached());
     stats.first_sample_seconds = start.seconds();
     stats.start = start.steps();
+    stats.sampling = sampling;
     write_stats(stats, args.stats);
   }
   if (!stop_requested()) rehearsal.finish();  // a render shorter than that would leave it to each one after it
   const double rays = double(r.counts.primary + r.counts.bounce + r.counts.shadow);
   if (!args.quiet)
-    fmt::print(stderr, "{} samples per pixel in {}, {:.2f} Mrays/s\n", r.samples, duration_text(r.seconds),
+    fmt::print(stderr, "{} in {}, {:.2f} Mrays/s\n", samples_text(r.reached), duration_text(r.seconds),
                1e-6 * rays / r.seconds);
+  if (const std::string text = goal_text(sampling); !text.empty() && !args.quiet) fmt::print(stderr, "{}\n", text);
   for (const RareEvent& e : kRareEvents)
     if (const uint64_t count = r.counts.events[e.counter];
         count && e.weight == RareEvent::Weight::warning && !args.quiet)

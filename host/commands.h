@@ -22,7 +22,7 @@ struct SceneArgs {
 struct RenderArgs : SceneArgs {
   std::vector<std::filesystem::path> outputs;
   int spp = 0;
-  double seconds = 0;
+  double error = 0, seconds = 0;  ///< goals; 0: not set
   std::string size;
   std::filesystem::path stats;
 };

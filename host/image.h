@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace wale {
@@ -12,6 +13,7 @@ struct Image {
   int width = 0, height = 0;
   std::vector<std::string> channels;  ///< names, e.g. "R","G","B","albedo.R",...,"variance.R"
   std::vector<float> pixels;          ///< width*height*channels.size()
+  std::vector<std::pair<std::string, float>> attributes{};  ///< of an .exr, under names that begin with "wale:"
   float* at(int x, int y) { return pixels.data() + (size_t(y) * width + x) * channels.size(); }
   const float* at(int x, int y) const { return pixels.data() + (size_t(y) * width + x) * channels.size(); }
 };

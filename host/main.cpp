@@ -88,8 +88,10 @@ int run(int argc, char** argv) {
   add_device_options(*c, render, "its number, several with commas between them, or all");
   add_features_option(*c, render.also);
   c->add_option("-o,--output", render.outputs, "image to write (repeatable)")->required()->allow_extra_args(false);
-  c->add_option("--spp", render.spp, "samples per pixel")->check(CLI::Range(1, 1 << 24));
-  c->add_option("--seconds", render.seconds, "stop after this many seconds")->check(finite_number(false));
+  c->add_option("--spp", render.spp, "samples per pixel; with --error the most")->check(CLI::Range(1, 1 << 24));
+  c->add_option("--error", render.error, "stop each tile at this noise, relative to its mean: 0.05")
+      ->check(finite_number(false));
+  c->add_option("--seconds", render.seconds, "stop after this many seconds of rendering")->check(finite_number(false));
   c->add_option("--size", render.size, "WIDTHxHEIGHT");
   c->add_option("--stats", render.stats, "write what was done as JSON");
   c->callback([&] { status = wale::run_render(render, loaders); });

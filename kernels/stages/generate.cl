@@ -11,7 +11,7 @@ __kernel void generate(WFrame frame, WCamera camera, W_PATH_PARAMS, __global uin
   list[slot] = slot;
   radiance[slot] = (float4)(0.0f);
   weight[slot] = (float4)(1.0f);
-  const uint pixel = w_slot_pixel(&frame, slot);
+  const uint pixel = w_slot_pixel(&frame, wave_tiles, slot);
   int x, y;
   const int inside = w_pixel_xy(pixel, camera.width, camera.height, &x, &y);
   mask[slot] = inside ? W_BIN_ALIVE : 0u;

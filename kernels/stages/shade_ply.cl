@@ -76,7 +76,7 @@ W_CALL void w_shade_ply(const WFrame* frame, W_PATH_PARAMS, const WScene* scene,
                      s.anchor + s.x, s.ply)
 #endif
 
-  const WSampler sampler = w_sampler(w_slot_pixel(frame, slot), w_slot_sample(frame, slot), frame->seed);
+  const WSampler sampler = w_sampler(w_slot_pixel(frame, wave_tiles, slot), w_slot_sample(frame, slot), frame->seed);
   const float4 u = w_sample4(&sampler, W_SET_SCATTER(depth));
   w_real left;
   const int lobe = w_ply_choose(&shade, u.x, &left);

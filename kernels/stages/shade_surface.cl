@@ -72,7 +72,7 @@ W_CALL void w_shade_surface(const WFrame* frame, W_PATH_PARAMS, const WLights* l
   // Rounding of the hit: a few ulps of the largest coordinate and of the way travelled.
   const w_real reach = fmax(fmax(fabs(p.x), fabs(p.y)), fmax(fabs(p.z), t));
   const w_real3 lift = n_geo * (reach * R(4e-7));
-  const WSampler sampler = w_sampler(w_slot_pixel(frame, slot), w_slot_sample(frame, slot), frame->seed);
+  const WSampler sampler = w_sampler(w_slot_pixel(frame, wave_tiles, slot), w_slot_sample(frame, slot), frame->seed);
   const float4 u = w_sample4(&sampler, W_SET_SCATTER(depth));
   const w_real3 wv = -d;
 
