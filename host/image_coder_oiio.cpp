@@ -62,4 +62,4 @@ constexpr ImageCoder kCoder{decode, encode_png, write_exr};
 }  // namespace
 }  // namespace wale
 
-extern "C" const wale::ImageCoder* wale_image_coder() { return &wale::kCoder; }
+extern "C" const void* wale_image_coder() { return &wale::kCoder; }
