@@ -137,7 +137,7 @@ Stats stats_of(const Scene& scene, const World& world, const std::vector<RenderD
 
 int run_render(const RenderArgs& args, const Loaders& loaders) {
   Start start;
-  Scene scene = read_scene(args.scene, args.set);
+  Scene scene = read_scene(args);
   if (!args.size.empty()) apply_size(args.size, scene.film);
   // Everything that can be refused is refused before the long work starts.
   bool aovs = false;

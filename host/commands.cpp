@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "geom/error.h"
+#include "host/accuracy.h"
 #include "host/atomic_file.h"
 #include "host/compare.h"
 #include "host/export_curves.h"
@@ -50,9 +51,16 @@ std::vector<TextileMeasures> measures_of(const Scene& scene, const World& world)
 
 }  // namespace
 
+Scene read_scene(const SceneArgs& args) {
+  std::vector<std::string> overrides;
+  if (!args.preset.empty()) overrides = accuracy_preset(args.preset).overrides();
+  overrides.insert(overrides.end(), args.set.begin(), args.set.end());
+  return read_scene(args.scene, overrides);
+}
+
 int run_build(const SceneArgs& args, const std::filesystem::path& json, const Loaders& loaders) {
   require_json_path(json);
-  const Scene scene = read_scene(args.scene, args.set);
+  const Scene scene = read_scene(args);
   const World world = world_of(scene, loaders, args.quiet);
   const std::vector<TextileMeasures> textile = measures_of(scene, world);
   deliver(json, build_report_json(world, textile), build_report_text(world, textile));
@@ -61,7 +69,7 @@ int run_build(const SceneArgs& args, const std::filesystem::path& json, const Lo
 
 int run_plan(const SceneArgs& args, const std::filesystem::path& json, const Loaders& loaders) {
   require_json_path(json);
-  const Scene scene = read_scene(args.scene, args.set);
+  const Scene scene = read_scene(args);
   const Device device = Device::open(one_device_number(args.device));
   const World world = world_of(scene, loaders, args.quiet);
   const SceneDevice on_device(device, world, local_stage(scene.integrator));
@@ -73,7 +81,7 @@ int run_plan(const SceneArgs& args, const std::filesystem::path& json, const Loa
 
 int run_export(const SceneArgs& args, const std::filesystem::path& output, const Loaders& loaders) {
   require_export_path(output);
-  Scene scene = read_scene(args.scene, args.set);
+  Scene scene = read_scene(args);
   for (FabricScene& fabric : scene.fabrics) {
     if (fabric.spec.lattice > 0 || fabric.spec.storage == Storage::procedural)
       user_error(

@@ -11,6 +11,7 @@ namespace wale {
 struct SceneArgs {
   std::filesystem::path scene;
   std::vector<std::string> set;
+  std::string preset;  ///< of accuracy (host/accuracy.h), applied before `set`; empty = the scene's own
   std::string device = "0";  ///< as device_numbers() reads it
   std::filesystem::path kernel_dir;
   bool quiet = false;
@@ -23,6 +24,9 @@ struct RenderArgs : SceneArgs {
   std::string size;
   std::filesystem::path stats;
 };
+
+/// The scene of a command, with its overrides.
+Scene read_scene(const SceneArgs& args);
 
 /// The commands of the program; each returns the exit status 0 or throws an Error.
 int run_render(const RenderArgs& args, const Loaders& loaders);

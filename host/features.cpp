@@ -33,6 +33,7 @@ std::string Features::options() const {
   define(lights, "W_HAS_LIGHTS");
   define(detail, "W_HAS_DETAIL");
   define(paper_lobes, "W_PAPER_LOBES");
+  if (relaxed_math) out += " -cl-fast-relaxed-math";
   define(aovs, "W_AOVS");
   define(ply_colors, "W_HAS_PLY_COLORS");
   return out;
@@ -64,6 +65,7 @@ Features analyse(const World& world, const IntegratorScene& integrator, bool aov
   f.lights = !world.lights.lights.empty() && integrator.light_sampling != "bsdf";
   f.detail = f.plies && world.fibres.any();
   f.paper_lobes = f.plies && integrator.ply_lobes == "paper";
+  f.relaxed_math = integrator.math == "relaxed";
   f.aovs = aovs;
   f.ply_colors = !world.ply_colors.empty();
   f.local_stage = local_stage(integrator);
@@ -99,6 +101,7 @@ Features foresee(const Scene& scene, bool aovs, const DeviceTraits& traits) {
   const IntegratorScene& integrator = scene.integrator;
   f.lights = f.lights && integrator.light_sampling != "bsdf";
   f.paper_lobes = f.plies && integrator.ply_lobes == "paper";
+  f.relaxed_math = integrator.math == "relaxed";
   f.aovs = aovs;
   f.local_stage = local_stage(integrator);
   choose_traversal(f, integrator, traits);
@@ -145,6 +148,7 @@ std::vector<Reason> explain(const World& world, const IntegratorScene& integrato
        : curves  ? "every fibre is a curve of its own"
                  : "no fabric in the scene"},
       {"Lambert ply lobes", f.paper_lobes, "integrator.ply_lobes is \"" + integrator.ply_lobes + "\""},
+      {"relaxed arithmetic", f.relaxed_math, "integrator.math is \"" + integrator.math + "\""},
       {"feature images", f.aovs, f.aovs ? "an .exr is written" : "only .png is written"},
       {"varying colours", f.ply_colors,
        f.ply_colors ? "fabrics: " + names(world.colored_fabrics, [](const auto& n) { return n; })

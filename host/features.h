@@ -18,6 +18,7 @@ struct Features {
   bool environment = false, lights = false;  ///< lights: something is sampled by next-event estimation
   bool detail = false;                       ///< fibres show on plies, by maps
   bool paper_lobes = false;                  ///< bodies of plies are Lambert lobes
+  bool relaxed_math = false;                 ///< the compiler may reorder and approximate
   bool aovs = false;
   bool mesh_warp = false;       ///< some plies are warped by the base mesh itself
   bool stored_lattice = false;  ///< some are warped by a lattice, and stored

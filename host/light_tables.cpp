@@ -41,7 +41,7 @@ void require_emission(const std::array<float, 3>& c) {
 
 }  // namespace
 
-EnvironmentTables environment_tables(const std::vector<float>& rgb, int width, int height) {
+EnvironmentTables environment_tables(const std::vector<float>& rgb, int width, int height, LightChoice choice) {
   if (width < 1 || height < 1 || rgb.size() != size_t(width) * height * 3)
     bug("environment_tables: {} values for {} x {} texels", rgb.size(), width, height);
   std::vector<double> brightness(size_t(width) * height);
@@ -67,8 +67,9 @@ EnvironmentTables environment_tables(const std::vector<float>& rgb, int width, i
     const int above = std::max(y - 1, 0), below = std::min(y + 1, height - 1);
     double sum = 0;
     for (int x = 0; x < width; ++x) {
-      const double weight = 0.25 * (across[size_t(above) * width + x] + 2 * across[size_t(y) * width + x] +
-                                    across[size_t(below) * width + x]);
+      const double power = 0.25 * (across[size_t(above) * width + x] + 2 * across[size_t(y) * width + x] +
+                                   across[size_t(below) * width + x]);
+      const double weight = choice == LightChoice::power ? power : power > 0 ? 1 : 0;
       row[x] = out.texels[size_t(y) * width + x].w = float(weight);
       sum += row[x];
     }
@@ -136,7 +137,7 @@ int LightTableBuilder::add_environment(const std::array<float, 3>& mean_radiance
   return add(light, mean(mean_radiance) * 4 * kPi * kPi * power_radius * power_radius);
 }
 
-LightTables LightTableBuilder::finish() {
+LightTables LightTableBuilder::finish(LightChoice choice) {
   double total = 0;
   int lit = 0;
   for (const double p : power_) {
@@ -145,7 +146,9 @@ LightTables LightTableBuilder::finish() {
   }
   // A tenth is shared evenly: a weak lamp beside the sky still lights what is near it.
   for (size_t i = 0; i < power_.size(); ++i)
-    if (power_[i] > 0) tables_.lights[i].radiance.w = float(0.9 * power_[i] / total + 0.1 / lit);
+    if (power_[i] > 0)
+      tables_.lights[i].radiance.w =
+          choice == LightChoice::power ? float(0.9 * power_[i] / total + 0.1 / lit) : 1.0f / float(lit);
   return std::move(tables_);
 }
 

@@ -7,6 +7,9 @@
 
 namespace wale {
 
+/// How often a light, or a texel of the sky, is sampled: by its power, or all alike (those that are not black).
+enum class LightChoice { power, uniform };
+
 /// Sampling tables of an environment image; layout as in kernels/environment.clh.
 struct EnvironmentTables {
   std::vector<w_float4> texels;  ///< width * height: rgb radiance, w = sampling weight
@@ -18,7 +21,8 @@ struct EnvironmentTables {
 /// of the channels over its 3x3 neighbourhood under a tent, so that the density is positive wherever the bilinear
 /// lookup is, and radiance over density stays bounded. Throws a bug on a size that does not fit and a user error on
 /// negative or non-finite texels.
-EnvironmentTables environment_tables(const std::vector<float>& rgb, int width, int height);
+EnvironmentTables environment_tables(const std::vector<float>& rgb, int width, int height,
+                                     LightChoice choice = LightChoice::power);
 
 using LightTriangle = std::array<float, 9>;  ///< three corners, metres
 
@@ -30,8 +34,8 @@ struct LightTables {
   std::vector<int32_t> triangle_index;  ///< triangle of the scene
 };
 
-/// Adds lights one after the other; finish() sets the probabilities of choosing them by power, none of them 0 unless
-/// the light is black. Each add returns the index of the light.
+/// Adds lights one after the other; finish() sets the probabilities of choosing them, none of them 0 unless the light
+/// is black. Each add returns the index of the light.
 class LightTableBuilder {
  public:
   int add_sphere(const std::array<float, 3>& radiance, const std::array<float, 3>& center, float radius);
@@ -41,7 +45,7 @@ class LightTableBuilder {
                const std::vector<int32_t>& scene_triangles, bool one_sided);
   /// power_radius: radius (metres) of a ball around the scene, which the environment lights with pi r^2 of its disc.
   int add_environment(const std::array<float, 3>& mean_radiance, float power_radius);
-  LightTables finish();
+  LightTables finish(LightChoice choice = LightChoice::power);
 
  private:
   int add(WLight light, double power);

@@ -7,6 +7,7 @@
 #include "bench/wale_bench/options.h"
 #include "geom/base_mesh.h"
 #include "geom/error.h"
+#include "host/accuracy.h"
 #include "host/commands.h"
 #include "host/device.h"
 #include "host/device_fault.h"
@@ -31,7 +32,10 @@ CLI::Validator finite_number(bool zero_too) {
 
 void add_scene_options(CLI::App& command, SceneArgs& args) {
   command.add_option("SCENE", args.scene, "scene file")->required();
-  command.add_option("--set", args.set, "change a key of the scene: key.path=value (repeatable)")
+  command.add_option("--preset", args.preset, "accuracy: " + wale::preset_names() + "; goes before --set");
+  command
+      .add_option("--set", args.set,
+                  "change a key of the scene: key.path=value (repeatable; * = every element of a list)")
       ->allow_extra_args(false);
   command.add_flag("--quiet", args.quiet, "no progress");
 }

@@ -23,6 +23,7 @@ WFrame frame_of(const World& world, const IntegratorScene& integrator) {
   frame.max_depth = uint32_t(integrator.max_depth);
   frame.roulette_depth = uint32_t(integrator.russian_roulette_depth);
   frame.light_sampling = integrator.light_sampling == "mis" ? 0 : integrator.light_sampling == "light" ? 1 : 2;
+  frame.opaque_shadows = integrator.ply_shadows == "opaque";
   frame.lights = uint32_t(world.lights.lights.size());
   frame.spheres = uint32_t(world.spheres.size());
   return frame;

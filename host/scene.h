@@ -156,11 +156,14 @@ struct IntegratorScene {
   int spp = 64;
   int max_depth = 0;  ///< scattering events; 0 = unlimited
   int russian_roulette_depth = 4;
-  std::string light_sampling = "mis";  ///< mis, light, bsdf
-  std::string ply_lobes = "full";      ///< full, paper
-  std::string local_stage = "exact";   ///< exact, cell, cell+ring
-  int lanes = 0;                       ///< 0 = from the device; 1, 8, 16
-  unsigned pool = 0;                   ///< paths in flight; 0 = from the device
+  std::string light_sampling = "mis";      ///< mis, light, bsdf
+  std::string ply_lobes = "full";          ///< full, paper
+  std::string local_stage = "exact";       ///< exact, cell, cell+ring
+  std::string ply_shadows = "attenuated";  ///< attenuated, opaque
+  std::string light_choice = "power";      ///< power, uniform
+  std::string math = "exact";              ///< exact, relaxed
+  int lanes = 0;                           ///< 0 = from the device; 1, 8, 16
+  unsigned pool = 0;                       ///< paths in flight; 0 = from the device
   unsigned seed = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "host/scene_overrides.h"
 
 #include <algorithm>
+#include <span>
 
 #include "geom/error.h"
 #include "host/suggest.h"
@@ -39,13 +40,38 @@ JsonNode& element(JsonNode& list, const std::string& key, const std::string& opt
              names.empty() ? "elements are numbered from 0" : nearest_choice(key, names));
 }
 
-JsonNode& member(JsonNode& object, const std::string& key, const std::string& option) {
+// Made when absent, as an empty list or object.
+JsonNode& member(JsonNode& object, const std::string& key, bool list, const std::string& option) {
   if (JsonNode* found = object.find(key)) return *found;
   object.members.push_back({key, {option, 0, 0}, {}});
   JsonNode& made = object.members.back().value;
-  made.kind = JsonNode::Kind::object;
+  made.kind = list ? JsonNode::Kind::array : JsonNode::Kind::object;
   made.place = {option, 0, 0};
   return made;
+}
+
+// Sets what `keys` from `first` on lead to below the node; "*" leads to every element of a list.
+void set(JsonNode& node, std::span<const std::string> keys, const JsonNode& value, const std::string& option,
+         const std::string& path) {
+  if (keys.empty()) {
+    node = value;
+    return;
+  }
+  const std::string& key = keys.front();
+  const auto rest = keys.subspan(1);
+  const std::string below = path + (path.empty() ? "" : ".") + key;
+  if (key.empty()) user_error("{}: an empty key in the path", option);
+  if (node.kind == JsonNode::Kind::array && key == "*")
+    for (JsonNode& item : node.items) set(item, rest, value, option, below);
+  else if (node.kind == JsonNode::Kind::array)
+    set(element(node, key, option, path), rest, value, option, below);
+  else if (key == "*")
+    user_error("{}: {} is {}; \"*\" stands for the elements of a list", option, path.empty() ? "the scene" : path,
+               node.describe());
+  else if (node.kind == JsonNode::Kind::object)
+    set(member(node, key, !rest.empty() && rest.front() == "*", option), rest, value, option, below);
+  else
+    user_error("{}: {} is {}, which has no \"{}\"", option, path.empty() ? "the scene" : path, node.describe(), key);
 }
 
 void apply(JsonNode& document, const std::string& override_text) {
@@ -53,22 +79,10 @@ void apply(JsonNode& document, const std::string& override_text) {
   const size_t equals = override_text.find('=');
   if (equals == std::string::npos || equals == 0)
     user_error("{}: not of the form key.path=value, for example film.size=[256,256]", option);
-  JsonNode* node = &document;
-  std::string path;
   const auto keys = split(override_text.substr(0, equals));
   if (keys.size() > kMaxJsonDepth)
     user_error("{}: a path of {} keys; at most {}", option.substr(0, 60), keys.size(), kMaxJsonDepth);
-  for (const auto& key : keys) {
-    if (key.empty()) user_error("{}: an empty key in the path", option);
-    if (node->kind == JsonNode::Kind::array)
-      node = &element(*node, key, option, path);
-    else if (node->kind == JsonNode::Kind::object)
-      node = &member(*node, key, option);
-    else
-      user_error("{}: {} is {}, which has no \"{}\"", option, path.empty() ? "the scene" : path, node->describe(), key);
-    path += (path.empty() ? "" : ".") + key;
-  }
-  *node = parse_option_value(override_text.substr(equals + 1), option);
+  set(document, keys, parse_option_value(override_text.substr(equals + 1), option), option, "");
 }
 
 }  // namespace

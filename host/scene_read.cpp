@@ -99,6 +99,9 @@ IntegratorScene integrator_of(const JsonNode& node) {
   out.light_sampling = node["light_sampling"].text;
   out.ply_lobes = node["ply_lobes"].text;
   out.local_stage = node["local_stage"].text;
+  out.ply_shadows = node["ply_shadows"].text;
+  out.light_choice = node["light_choice"].text;
+  out.math = node["math"].text;
   out.lanes = integer_of(node, "lanes");
   out.pool = static_cast<unsigned>(number_of(node, "pool"));
   out.seed = static_cast<unsigned>(number_of(node, "seed"));

@@ -201,7 +201,11 @@ class Builder {
     for (const auto& t : triangles_) upload_triangle(t);
     for (const auto& s : spheres_)
       world_.spheres.push_back({vec4(s.centre - world_.origin, s.radius), s.material, s.light, 0, 0});
-    world_.lights = tables.finish();
+    world_.lights = tables.finish(light_choice());
+  }
+
+  LightChoice light_choice() const {
+    return scene_.integrator.light_choice == "uniform" ? LightChoice::uniform : LightChoice::power;
   }
 
   void add_sphere_light(const LightScene& light, LightTableBuilder& tables) {
@@ -283,7 +287,7 @@ class Builder {
         for (size_t k = 0; k < 3; ++k)
           rgb[3 * i + k] = image.pixels[i * n + (n >= 3 ? k : 0)] * float(light.radiance[k]);
       darken_negative(rgb, light.file);
-      world_.environment_tables = environment_tables(rgb, image.width, image.height);
+      world_.environment_tables = environment_tables(rgb, image.width, image.height, light_choice());
       env.width = image.width;
       env.height = image.height;
       env.average = world_.environment_tables.average;

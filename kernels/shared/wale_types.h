@@ -248,6 +248,9 @@ typedef struct WCamera {
   w_int kind, width, height, filter; /* filter 0 box, 1 tent of 2 pixels */
 } WCamera;
 
+/* Key of a ray that passes through no ply (sampling/dimensions.clh). */
+#define W_KEY_OPAQUE 0xffffffffu
+
 /* Everything that changes between launches. */
 typedef struct WFrame {
   w_uint first_path; /* first (pixel, sample) index of this wave, in 2^32 steps below */
@@ -262,6 +265,7 @@ typedef struct WFrame {
   w_uint lights;
   w_uint spheres;
   w_uint roulette_depth; /* first depth at which Russian roulette may end a path */
+  w_uint opaque_shadows; /* 1: plies stop shadow rays whole */
 } WFrame;
 
 /* Rare events, counted on the device: never hidden. */
@@ -288,6 +292,6 @@ static_assert(sizeof(WLight) == 48);
 static_assert(sizeof(WSphere) == 32);
 static_assert(sizeof(WEnvironment) == 80);
 static_assert(sizeof(WCamera) == 96);
-static_assert(sizeof(WFrame) == 48);
+static_assert(sizeof(WFrame) == 52);
 #endif
 #endif

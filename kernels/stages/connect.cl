@@ -19,6 +19,7 @@ __kernel void connect(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, __global cons
   w_ask_for_start(&scene, shadow_l, list, i, count);
   WRay ray = w_slot_ray(shadow_o, shadow_l, shadow_d, slot);
   ray.tmax = shadow_d[slot].w;
-  ray.key = w_ray_key(w_slot_pixel(&frame, slot), w_slot_sample(&frame, slot), depth, W_RAY_SHADOW, frame.seed);
+  ray.key =
+      w_shadow_key(w_slot_pixel(&frame, slot), w_slot_sample(&frame, slot), depth, frame.seed, frame.opaque_shadows);
   if (w_connects(&scene, &ray)) radiance[slot].xyz += shadow_c[slot].xyz;
 }

@@ -25,6 +25,22 @@ TEST(LightTables, ChoicesAddUpAndBlackIsNeverChosen) {
   EXPECT_GT(tables.lights[3].radiance.w, tables.lights[0].radiance.w);
 }
 
+TEST(LightTables, UniformChoiceForgetsPowerButNotBlackness) {
+  LightTableBuilder builder;
+  builder.add_sphere({9, 9, 9}, {0, 0, 0}, 1);
+  builder.add_sphere({0, 0, 0}, {0, 0, 0}, 1);
+  builder.add_sphere({1e-6f, 0, 0}, {0, 0, 0}, 1);
+  const LightTables tables = builder.finish(LightChoice::uniform);
+  EXPECT_EQ(tables.lights[0].radiance.w, 0.5f);
+  EXPECT_EQ(tables.lights[1].radiance.w, 0);
+  EXPECT_EQ(tables.lights[2].radiance.w, 0.5f);
+  std::vector<float> sky(8 * 4 * 3, 0.01f);
+  sky[3 * (8 * 1 + 2)] = 500;
+  const EnvironmentTables even = environment_tables(sky, 8, 4, LightChoice::uniform);
+  for (const w_float4& texel : even.texels) EXPECT_EQ(texel.w, 1);
+  EXPECT_NEAR(even.average, 1, 1e-6);
+}
+
 TEST(LightTables, MeshesKeepTheirRangesAndAreas) {
   const LightTriangle one = {0, 0, 0, 1, 0, 0, 0, 1, 0}, none = {0, 0, 0, 0, 0, 0, 0, 0, 0};
   LightTableBuilder builder;

@@ -1,0 +1,74 @@
+// The table of accuracy options: every level can be set on every scene and is recognised; presets name one of each.
+#include "host/accuracy.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "geom/error.h"
+#include "host/scene.h"
+
+namespace wale {
+namespace {
+
+constexpr const char* kTwoFabrics = R"({"wale": 1, "fabrics": [
+  {"name": "a", "mesh": {"generator": "swatch"}, "pattern": {"builtin": "stockinette"}, "uv_metres": true},
+  {"name": "b", "mesh": {"generator": "swatch"}, "pattern": {"builtin": "stockinette"}, "uv_metres": true}]})";
+
+Scene with(const std::vector<std::string>& overrides) { return parse_scene(kTwoFabrics, "test.json", overrides); }
+
+TEST(Accuracy, ASceneStandsAtTheLevelThatItWasSetTo) {
+  for (const AccuracyOption& option : accuracy_options()) {
+    EXPECT_GE(option.levels.size(), 2u) << option.name;
+    std::set<std::string> names;
+    for (const AccuracyLevel& level : option.levels) {
+      EXPECT_EQ(option.at(with(level.overrides)), level.name) << option.name;
+      EXPECT_TRUE(names.insert(level.name).second) << option.name;
+    }
+  }
+}
+
+TEST(Accuracy, APlainSceneStandsAtTheFinalPreset) {
+  const Scene plain = with({});
+  const AccuracyPreset& preset = accuracy_preset("final");
+  ASSERT_EQ(preset.levels.size(), accuracy_options().size());
+  for (const auto& [option, level] : preset.levels) EXPECT_EQ(accuracy_option(option).at(plain), level) << option;
+}
+
+TEST(Accuracy, PresetsNameOneLevelOfEveryOption) {
+  for (const AccuracyPreset& preset : accuracy_presets()) {
+    ASSERT_EQ(preset.levels.size(), accuracy_options().size()) << preset.name;
+    const Scene scene = with(preset.overrides());
+    for (size_t i = 0; i < preset.levels.size(); ++i) {
+      const AccuracyOption& option = accuracy_options()[i];
+      EXPECT_EQ(preset.levels[i].first, option.name) << preset.name;
+      ASSERT_NE(option.level(preset.levels[i].second), nullptr) << preset.name << " " << option.name;
+      EXPECT_EQ(option.at(scene), preset.levels[i].second) << preset.name << " " << option.name;
+    }
+  }
+}
+
+TEST(Accuracy, FabricsThatDifferAreMixed) {
+  EXPECT_EQ(accuracy_option("detail").at(with({"fabrics.b.detail=none"})), "mixed");
+  EXPECT_EQ(accuracy_option("curves").at(with({"fabrics.*.tolerance=0.07"})), "0.07");
+}
+
+TEST(Accuracy, WrongNamesAreRefusedWithTheRightOnes) {
+  try {
+    accuracy_preset("drafft");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_STREQ(e.what(), "--preset drafft: no such preset; valid: draft, paper, final, reference");
+  }
+  EXPECT_THROW(accuracy_option("curve"), Error);
+}
+
+TEST(Accuracy, StarsStandForListsOnly) {
+  EXPECT_EQ(with({"fabrics.*.tolerance=0.2"}).fabrics.at(1).spec.tolerance, 0.2);
+  EXPECT_THROW(with({"film.*=1"}), Error);
+  EXPECT_THROW(with({"fabric.*.tolerance=0.1"}), Error);
+  EXPECT_NO_THROW(with({"lights.*.intensity=2"}));  // a list that is not there has no element to change
+}
+
+}  // namespace
+}  // namespace wale
