@@ -13,20 +13,11 @@
 #include "host/rare_events.h"
 #include "host/rehearsal.h"
 #include "host/render.h"
+#include "host/scene_identity.h"
 #include "host/stop.h"
 
 namespace wale {
 namespace {
-
-// "WxH" into the film's size.
-void apply_size(const std::string& size, FilmScene& film) {
-  int w = 0, h = 0, end = 0;
-  if (std::sscanf(size.c_str(), "%dx%d%n", &w, &h, &end) != 2 || size_t(end) != size.size() || w < 1 || h < 1 ||
-      w > 65536 || h > 65536)
-    user_error("--size {}: expected WIDTHxHEIGHT, each 1 to 65536, for example 768x768", size);
-  film.width = w;
-  film.height = h;
-}
 
 // The devices of a render and the scene on each of them.
 class Devices {
@@ -185,7 +176,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
     fmt::print(stderr, "note: {} joints bend too tightly to be warped where rays meet them: their fabrics are stored\n",
                tight);
   Progress bar("render", args.quiet);
-  const Rendered r = render(devices.list(), world, scene.integrator, options, [&](double f) {
+  Rendered r = render(devices.list(), world, scene.integrator, options, [&](double f) {
     if (!args.outputs.empty()) image_coder();  // if it cannot be loaded, now rather than when all is rendered
     bar.update(f);
   });
@@ -193,6 +184,8 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   start.step("programs", r.program_seconds);
   start.step("first wave", r.first_sample_seconds);
 
+  r.image.attributes = {{kSceneAttribute, scene_identity(args.scene, args.set)},
+                        {kAccuracyAttribute, accuracy_settings(scene)}};
   for (const auto& output : args.outputs) write_image(r.image, output, scene.film.exposure, scene.film.view);
   const Features features = analyse(world, scene.integrator, aovs, devices.list().front().device->traits());
   if (!args.stats.empty()) {

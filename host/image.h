@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,7 @@ struct Image {
   int width = 0, height = 0;
   std::vector<std::string> channels;  ///< names, e.g. "R","G","B","albedo.R",...,"variance.R"
   std::vector<float> pixels;          ///< width*height*channels.size()
+  std::map<std::string, std::string> attributes = {};  ///< "wale:..." of an EXR's header
   float* at(int x, int y) { return pixels.data() + (size_t(y) * width + x) * channels.size(); }
   const float* at(int x, int y) const { return pixels.data() + (size_t(y) * width + x) * channels.size(); }
 };

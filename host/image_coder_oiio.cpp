@@ -29,6 +29,9 @@ std::string decode(std::string_view bytes, const std::string& format, const std:
   accept({spec.width, spec.height, channels, spec.alpha_channel, spec.deep,
           !spec.format.is_floating_point() && !OIIO::Strutil::iequals(space, "linear")});
   image = {spec.width, spec.height, std::move(channels), {}};
+  for (const auto& attribute : spec.extra_attribs)
+    if (attribute.name().string().starts_with("wale:") && attribute.type() == OIIO::TypeString)
+      image.attributes[attribute.name().string()] = attribute.get_string();
   image.pixels.resize(size_t(spec.width) * size_t(spec.height) * size_t(spec.nchannels));
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data())) return reason(input);
   return {};
@@ -50,6 +53,7 @@ std::string write_exr(const Image& image, const std::string& file) {
   OIIO::ImageSpec spec(image.width, image.height, int(image.channels.size()), OIIO::TypeDesc::FLOAT);
   spec.channelnames = image.channels;
   spec.attribute("compression", "zip");
+  for (const auto& [name, value] : image.attributes) spec.attribute(name, value);
   const auto output = OIIO::ImageOutput::create(file);
   if (!output || !output->open(file, spec) || !output->write_image(spec.format, image.pixels.data()) ||
       !output->close())

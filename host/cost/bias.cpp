@@ -1,7 +1,6 @@
 #include "host/cost/bias.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "geom/error.h"
@@ -9,52 +8,36 @@
 namespace wale::cost {
 namespace {
 
-constexpr size_t kMostRepetitions = 16;
-
 // What one pixel says: its part of the relative mean squared error, and the variance of that part.
 struct PixelBias {
   double square = 0, variance = 0;
 };
 
-// Scalar products of the repetitions' differences at one pixel, over its channels.
-class Gram {
- public:
-  Gram(const double (*d)[3], size_t count) : count_(count) {
-    for (size_t i = 0; i < count; ++i)
-      for (size_t j = 0; j <= i; ++j)
-        g_[i][j] = g_[j][i] = d[i][0] * d[j][0] + d[i][1] * d[j][1] + d[i][2] * d[j][2];
-  }
-
-  PixelBias bias() const {
-    const double n = double(count_);
-    double square = 0, trace = 0, slope = 0;
-    size_t quartets = 0;
-    for (size_t a = 0; a < count_; ++a)
-      for (size_t b = 0; b < a; ++b) {
-        square += 2 * g_[a][b];
-        for (size_t c = 0; c < a; ++c)
-          for (size_t d = 0; d < c; ++d) {
-            if (c == b || d == b) continue;
-            // (d_a - d_b).(d_c - d_d) holds the noise alone: the mean of its square is 4 tr(C^2).
-            const double noise = g_[a][c] - g_[a][d] - g_[b][c] + g_[b][d];
-            trace += noise * noise / 4;
-            // d_a.(d_c - d_d) times d_b.(d_c - d_d) has the mean 2 D'CD; and so with the pairs exchanged.
-            slope += ((g_[a][c] - g_[a][d]) * (g_[b][c] - g_[b][d]) + (g_[c][a] - g_[c][b]) * (g_[d][a] - g_[d][b])) / 4;
-            ++quartets;
-          }
-      }
-    PixelBias out{square / (n * (n - 1)), 0};
-    if (quartets > 0) {
-      trace /= double(quartets), slope /= double(quartets);
-      out.variance = 4 * slope / n + 2 * trace / (n * (n - 1));
+// From the differences d of `count` repetitions at one pixel, over its channels. Means over distinct repetitions come
+// from sums over all of them: of g_ij = d_i.d_j, g_ij^2, g_ij g_jk and g_ij g_kl, as in Chen and Qin 2010, "A
+// Two-Sample Test for High-Dimensional Data".
+PixelBias pixel_bias(const double (*d)[3], size_t count) {
+  const double n = double(count);
+  double sum = 0, squares = 0, chains = 0;
+  for (size_t i = 0; i < count; ++i) {
+    double row = 0;
+    for (size_t j = 0; j < count; ++j) {
+      if (j == i) continue;
+      const double g = d[i][0] * d[j][0] + d[i][1] * d[j][1] + d[i][2] * d[j][2];
+      row += g, squares += g * g;
     }
-    return out;
+    sum += row, chains += row * row;
   }
-
- private:
-  size_t count_;
-  double g_[kMostRepetitions][kMostRepetitions];
-};
+  chains -= squares;                                          // i != k
+  const double apart = sum * sum - 4 * chains - 2 * squares;  // all four distinct
+  PixelBias out{sum / (n * (n - 1)), 0};
+  if (count < size_t(kFewestRepetitions)) return out;
+  squares /= n * (n - 1), chains /= n * (n - 1) * (n - 2);
+  const double pairs = apart / (n * (n - 1) * (n - 2) * (n - 3));
+  const double slope = chains - pairs, trace = squares - 2 * chains + pairs;  // D'CD, tr(C^2)
+  out.variance = 4 * slope / n + 2 * trace / (n * (n - 1));
+  return out;
+}
 
 void require_sizes(std::span<const Picture> pictures, size_t values) {
   for (const Picture& p : pictures)
@@ -67,19 +50,19 @@ template <typename Reference>
 Bias cross(std::span<const Picture> level, const Reference& reference, const std::vector<float>* known,
            const std::vector<double>& weights) {
   Bias out;
-  const size_t n = std::min(level.size(), kMostRepetitions);
+  const size_t n = std::min(level.size(), kMostCrossed);
   out.repetitions = int(n);
   if (n < 2) return out;
   double square = 0, variance = 0;
   for (size_t p = 0; p < weights.size(); ++p) {
     const double root = std::sqrt(weights[p]);
-    double d[kMostRepetitions][3], mean[3] = {0, 0, 0};
+    double d[kMostCrossed][3], mean[3] = {0, 0, 0};
     for (size_t i = 0; i < n; ++i)
       for (size_t c = 0; c < 3; ++c) {
         d[i][c] = root * (double(level[i].rgb[3 * p + c]) - reference(i).rgb[3 * p + c]);
         mean[c] += d[i][c] / double(n);
       }
-    PixelBias pixel = Gram(d, n).bias();
+    PixelBias pixel = pixel_bias(d, n);
     if (known) {
       // All repetitions share the reference's noise, which adds its variance to the square. Taken as the same in all
       // channels, which it nearly is, it moves the square by twice its product with the difference.
@@ -145,7 +128,8 @@ Bias relative_bias(std::span<const Picture> level, std::span<const Picture> refe
   require_sizes(level, 3 * weights.size());
   require_sizes(reference, 3 * weights.size());
   const size_t both = std::min(level.size(), reference.size());
-  return cross(level.first(both), [&](size_t i) -> const Picture& { return reference[i]; }, nullptr, weights);
+  return cross(
+      level.first(both), [&](size_t i) -> const Picture& { return reference[i]; }, nullptr, weights);
 }
 
 Bias relative_bias(std::span<const Picture> level, const Picture& reference, const std::vector<float>& variance,
@@ -153,7 +137,8 @@ Bias relative_bias(std::span<const Picture> level, const Picture& reference, con
   require_sizes(level, 3 * weights.size());
   require_sizes({&reference, 1}, 3 * weights.size());
   if (variance.size() != reference.rgb.size()) bug("relative_bias: {} variances", variance.size());
-  return cross(level, [&](size_t) -> const Picture& { return reference; }, &variance, weights);
+  return cross(
+      level, [&](size_t) -> const Picture& { return reference; }, &variance, weights);
 }
 
 }  // namespace wale::cost

@@ -34,13 +34,14 @@ struct Bias {
 };
 
 constexpr int kFewestRepetitions = 4;
+constexpr size_t kMostCrossed = 64;  ///< later ones are left out
 
 /// Crosses repetitions: with d_i the difference of repetition i of the level from repetition i of the reference, the
 /// mean of d_i d_j over i != j has the squared bias as its expectation, whatever the noise, since repetitions are
 /// independent; those of one number may share their seed, so that common noise cancels in d_i. Its variance over the
 /// noise, 4 D'CD/n + 2 tr(C^2)/(n(n-1)) a pixel for a bias D and covariance C of d (a U-statistic: Hoeffding 1948, "A
-/// Class of Statistics with Asymptotically Normal Distribution"), is estimated without bias from four distinct
-/// repetitions at a time, for any distribution. Pixels are independent; channels need not be.
+/// Class of Statistics with Asymptotically Normal Distribution"), is estimated without bias for any
+/// distribution. Pixels are independent; channels need not be.
 Bias relative_bias(std::span<const Picture> level, std::span<const Picture> reference,
                    const std::vector<double>& weights);
 

@@ -24,8 +24,8 @@ struct Drawing {
     double size;
     std::string text;  ///< UTF-8
     Color color;
-    double anchor = 0;      ///< 0 left end, 0.5 middle, 1 right end
-    bool upright = false;   ///< turned by 90 degrees, reads upwards
+    double anchor = 0;     ///< 0 left end, 0.5 middle, 1 right end
+    bool upright = false;  ///< turned by 90 degrees, reads upwards
   };
   double width = 0, height = 0;
   std::vector<Line> lines;

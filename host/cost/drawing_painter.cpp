@@ -4,8 +4,7 @@
 namespace wale::cost {
 
 const DrawingPainter& drawing_painter() {
-  static const auto* painter =
-      static_cast<const DrawingPainter*>(load_table(kPainterLibrary, kPainterFunction));
+  static const auto* painter = static_cast<const DrawingPainter*>(load_table(kPainterLibrary, kPainterFunction));
   return *painter;
 }
 

@@ -5,13 +5,14 @@
 
 #include "geom/error.h"
 #include "host/accuracy.h"
+#include "host/scene_identity.h"
 #include "host/suggest.h"
 
 namespace wale::cost {
 namespace {
 
 // Options that launches and programs alone know of: what lies on the device is the same at all their levels.
-constexpr std::array kNoGeometry = {"ply_lobes", "depth", "light_sampling", "math"};
+constexpr std::array kNoGeometry = {"ply_lobes", "ply_shadows", "depth", "light_sampling", "math"};
 
 constexpr const char* kNoFabric = "no fabric";
 
@@ -22,10 +23,10 @@ class Collector {
 
   size_t add(const std::string& name, const std::vector<std::string>& overrides) {
     Scene scene = read(overrides);
-    const std::string settings = settings_of(scene, false);
+    const std::string settings = accuracy_settings(scene);
     for (size_t u = 0; u < out_.units.size(); ++u)
       if (out_.units[u].settings == settings) return u;
-    const std::string geometry = settings_of(scene, true);
+    const std::string geometry = geometry_of(scene);
     out_.units.push_back({name, std::move(scene), geometry, settings});
     return out_.units.size() - 1;
   }
@@ -59,11 +60,11 @@ class Collector {
     return scene;
   }
 
-  static std::string settings_of(const Scene& scene, bool geometry_alone) {
+  static std::string geometry_of(const Scene& scene) {
     std::string out;
     for (const AccuracyOption& option : accuracy_options())
-      if (!geometry_alone || std::find(kNoGeometry.begin(), kNoGeometry.end(), option.name) == kNoGeometry.end())
-        out += (out.empty() ? "" : ", ") + option.name + " " + option.at(scene);
+      if (std::find(kNoGeometry.begin(), kNoGeometry.end(), option.name) == kNoGeometry.end())
+        out += option.name + " " + option.at(scene) + ", ";
     return out;
   }
 

@@ -10,7 +10,7 @@ namespace wale::cost {
 
 /// One picture that is rendered; several levels may ask for the same.
 struct Unit {
-  std::string name;     ///< of the first level that asked for it
+  std::string name;  ///< of the first level that asked for it
   Scene scene;
   std::string geometry;  ///< equal for units that can share a World and what lies of it on the device
   std::string settings;  ///< its level of every accuracy option
@@ -18,11 +18,11 @@ struct Unit {
 
 /// A row of the report: the scene with one option at one level, or with a preset.
 struct Level {
-  std::string option, level;    ///< "preset" and its name for presets
-  std::optional<size_t> unit;   ///< none: it cannot be rendered
-  std::string skipped;          ///< why not
-  bool own = false;             ///< what the scene has anyway
-  bool beyond = false;          ///< more accurate than the reference in this option
+  std::string option, level;   ///< "preset" and its name for presets
+  std::optional<size_t> unit;  ///< none: it cannot be rendered
+  std::string skipped;         ///< why not
+  bool own = false;            ///< what the scene has anyway
+  bool beyond = false;         ///< more accurate than the reference in this option
 };
 
 /// What `wale cost` compares. Unit 0 is the scene as it is, `reference` the one that all are compared with.

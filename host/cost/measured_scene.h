@@ -32,7 +32,7 @@ struct Repetition {
   double wall = 0, cpu = 0;     ///< seconds; cpu: of all threads of this process
   double program_seconds = 0;
   uint64_t nan_samples = 0;
-  bool complete = false;        ///< false when the user stopped it
+  bool complete = false;  ///< false when the user stopped it
 };
 
 /// Where camera rays met the plies.

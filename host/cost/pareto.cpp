@@ -14,7 +14,7 @@ constexpr double kWidth = 900, kHeight = 600, kLeft = 74, kRight = 16, kTop = 40
 constexpr double kLabel = 10, kTick = 10, kTitle = 13, kDot = 3.6;
 constexpr Drawing::Color kInk{0.15, 0.15, 0.15}, kGrid{0.88, 0.88, 0.88}, kFront{0.6, 0.6, 0.6};
 
-// Okabe and Ito's eight for the colour blind, without yellow, and three more.
+// Seven of Okabe and Ito's for the colour blind, without yellow, and three more.
 constexpr std::array<Drawing::Color, 10> kColors = {{{0.00, 0.45, 0.70},
                                                      {0.84, 0.37, 0.00},
                                                      {0.00, 0.62, 0.45},
@@ -60,9 +60,7 @@ struct Range {
   void add(double v) {
     if (v > 0) low = std::min(low, v), high = std::max(high, v);
   }
-  Axis axis(double from, double to) const {
-    return high > 0 ? Axis(low, high, from, to) : Axis(0.1, 1, from, to);
-  }
+  Axis axis(double from, double to) const { return high > 0 ? Axis(low, high, from, to) : Axis(0.1, 1, from, to); }
 };
 
 class Chart {
@@ -71,8 +69,11 @@ class Chart {
       : points_(points), x_(x_axis(points)), y_(y_axis(points)) {
     drawing_.width = kWidth, drawing_.height = kHeight;
     frame(title);
+    frame_lines_ = drawing_.lines.size();
     front();
     for (size_t i = 0; i < points_.size(); ++i) mark(i);
+    for (const auto& line : drawing_.lines)
+      if (&line - drawing_.lines.data() >= std::ptrdiff_t(frame_lines_)) avoid(line);
     for (size_t i : by_crowd()) label(i);
   }
   Drawing take() { return std::move(drawing_); }
@@ -103,13 +104,15 @@ class Chart {
       drawing_.lines.push_back({kLeft, y_.at(v), right, y_.at(v), 0.6, kGrid});
       drawing_.texts.push_back({kLeft - 6, y_.at(v) + 3.5, kTick, fmt::format("{:g}%", 100 * v), kInk, 1});
     }
-    for (const auto& [x0, y0, x1, y1] : {std::array{kLeft, kTop, right, kTop}, std::array{kLeft, bottom, right, bottom},
-                                         std::array{kLeft, kTop, kLeft, bottom}, std::array{right, kTop, right, bottom}})
+    for (const auto& [x0, y0, x1, y1] :
+         {std::array{kLeft, kTop, right, kTop}, std::array{kLeft, bottom, right, bottom},
+          std::array{kLeft, kTop, kLeft, bottom}, std::array{right, kTop, right, bottom}})
       drawing_.lines.push_back({x0, y0, x1, y1, 0.8, kInk});
     drawing_.texts.push_back({kLeft, kTop - 16, kTitle, title, kInk});
-    drawing_.texts.push_back({0.5 * (kLeft + right), kHeight - 16, kTick + 1, "time to equal noise, over that of the scene as it is",
-                              kInk, 0.5});
-    drawing_.texts.push_back({18, 0.5 * (kTop + bottom), kTick + 1, "bias against the reference, relative RMS", kInk, 0.5, true});
+    drawing_.texts.push_back({0.5 * (kLeft + right), kHeight - 16, kTick + 1,
+                              "time to equal noise, over that of the scene as it is", kInk, 0.5});
+    drawing_.texts.push_back(
+        {18, 0.5 * (kTop + bottom), kTick + 1, "bias against the reference, relative RMS", kInk, 0.5, true});
   }
 
   double y_of(const ParetoPoint& p) const { return p.bias > 0 ? y_.at(p.bias) : kHeight - kBottom - 8; }
@@ -142,6 +145,11 @@ class Chart {
     taken_.push_back({x - kDot - 1, y - kDot - 1, x + kDot + 1, y + kDot + 1});
   }
 
+  void avoid(const Drawing::Line& l) {
+    taken_.push_back(
+        {std::min(l.x0, l.x1) - 1, std::min(l.y0, l.y1) - 1, std::max(l.x0, l.x1) + 1, std::max(l.y0, l.y1) + 1});
+  }
+
   // Those with the most neighbours choose their label's place first.
   std::vector<size_t> by_crowd() const {
     std::vector<size_t> order(points_.size());
@@ -149,7 +157,8 @@ class Chart {
     std::vector<int> near(points_.size(), 0);
     for (size_t i : order)
       for (size_t j : order)
-        near[i] += std::hypot(x_.at(points_[i].price) - x_.at(points_[j].price), y_of(points_[i]) - y_of(points_[j])) < 60;
+        near[i] +=
+            std::hypot(x_.at(points_[i].price) - x_.at(points_[j].price), y_of(points_[i]) - y_of(points_[j])) < 60;
     std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return near[a] > near[b]; });
     return order;
   }
@@ -180,6 +189,7 @@ class Chart {
   const std::vector<ParetoPoint>& points_;
   Axis x_, y_;
   Drawing drawing_;
+  size_t frame_lines_ = 0;
   std::vector<Box> taken_;
 };
 

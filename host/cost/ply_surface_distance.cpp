@@ -36,8 +36,7 @@ PlySurface::PlySurface(std::vector<Curve> curves) {
   }
   if (!(reach > 0)) return;
   middles_.emplace(reach);
-  for (size_t i = 0; i < segments_.size(); ++i)
-    middles_->add(0.5 * (segments_[i].start + segments_[i].end), int(i));
+  for (size_t i = 0; i < segments_.size(); ++i) middles_->add(0.5 * (segments_[i].start + segments_[i].end), int(i));
 }
 
 double PlySurface::radii_from(const dvec3& place, const Segment& s, bool joints) const {

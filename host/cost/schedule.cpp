@@ -76,8 +76,10 @@ RunPlan plan_runs(std::span<const UnitPrice> prices, double seconds) {
     (plan.repetitions * cycle(prices, samples_at(prices, kept, half, dear)) <= seconds ? low : high) = half;
   }
   plan.samples = samples_at(prices, kept, low, dear);
+  plan.repetitions = std::clamp(int(seconds / cycle(prices, plan.samples)), plan.repetitions, kMostRepetitions);
   for (size_t u = 0; u < prices.size(); ++u)
-    if (plan.samples[u]) plan.predicted[u] = plan.samples[u] * prices[u].seconds_per_sample + prices[u].seconds_per_visit;
+    if (plan.samples[u])
+      plan.predicted[u] = plan.samples[u] * prices[u].seconds_per_sample + prices[u].seconds_per_visit;
   return plan;
 }
 

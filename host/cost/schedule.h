@@ -21,11 +21,12 @@ struct RunPlan {
   std::vector<double> predicted;  ///< per unit, seconds of one repetition
 };
 
-constexpr int kWantedRepetitions = 8;
+constexpr int kWantedRepetitions = 8, kMostRepetitions = 32;
 
 /// Shares `seconds` among the units. All get the same samples, but those that cost more than kDearest times the middle
 /// one fewer. Where even kFewestRepetitions of the fewest samples take too long, the dearest are left out until the
-/// rest fits. No repetitions where the needed ones alone do not fit.
+/// rest fits. Time that more samples cannot use, as they come in eights, goes to more repetitions. No repetitions where
+/// the needed ones alone do not fit.
 RunPlan plan_runs(std::span<const UnitPrice> prices, double seconds);
 constexpr double kDearest = 4;
 
