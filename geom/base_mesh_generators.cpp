@@ -49,6 +49,61 @@ BaseMesh make_sheet(int nu, int nv, dvec2 uv_size, const std::function<dvec3(dou
   return mesh;
 }
 
+/// A plane curve given for s in [0,1], by its arc length; from a fine polyline.
+class ArcLength {
+ public:
+  explicit ArcLength(const std::function<dvec2(double)>& curve) {
+    constexpr int kFine = 4096;
+    for (int i = 0; i <= kFine; ++i) {
+      points_.push_back(curve(double(i) / kFine));
+      arc_.push_back(i ? arc_.back() + glm::length(points_.back() - points_[points_.size() - 2]) : 0.0);
+    }
+  }
+  double total() const { return arc_.back(); }
+  dvec2 at(double length) const {
+    const auto after = std::upper_bound(arc_.begin(), arc_.end(), length) - arc_.begin();
+    const size_t k = std::min(arc_.size() - 2, size_t(after) - 1);
+    return points_[k] + (length - arc_[k]) / (arc_[k + 1] - arc_[k]) * (points_[k + 1] - points_[k]);
+  }
+
+ private:
+  std::vector<dvec2> points_;
+  std::vector<double> arc_;
+};
+
+/// A tube of `total` arc length, joined at its seam (u = angle * radius, v along it), whose last part is a cap with a
+/// chart of its own, azimuthal equidistant about the apex. place(angle, arc length) for all but the apex.
+BaseMesh make_capped_tube(int nu, int nv, double radius, double total,
+                          const std::function<dvec3(double, double)>& place, dvec3 apex_at) {
+  const double crown = 0.42 * radius;  // arc length of the cap, apex to rim
+  BaseMesh mesh;
+  const int cap_rows = std::max(2, nv / 4), wall_rows = std::max(2, nv - cap_rows);
+  const auto add_ring = [&](double length) {
+    for (int i = 0; i < nu; ++i) mesh.position.push_back(place(2 * kPi * i / nu, length));
+  };
+  for (int j = 0; j <= wall_rows; ++j) add_ring((total - crown) * j / wall_rows);
+  for (int j = 1; j < cap_rows; ++j) add_ring(total - crown + crown * j / cap_rows);
+  const uint32_t apex = static_cast<uint32_t>(mesh.position.size());
+  mesh.position.push_back(apex_at);
+
+  const auto vertex = [&](int i, int j) { return static_cast<uint32_t>(j * nu + i % nu); };
+  add_grid(mesh, nu, wall_rows, vertex,
+           [&](int i, int j) { return dvec2(2 * kPi * radius * i / nu, (total - crown) * j / wall_rows); });
+  const dvec2 centre(kPi * radius, total + crown);  // above the wall's chart
+  const auto cap_uv = [&](int i, int j) {
+    const double angle = 2 * kPi * i / nu, r = crown * (1 - double(j) / cap_rows);
+    return centre + r * dvec2(std::cos(angle), std::sin(angle));
+  };
+  add_grid(
+      mesh, nu, cap_rows - 1, [&](int i, int j) { return vertex(i, wall_rows + j); }, cap_uv);
+  for (int i = 0; i < nu; ++i) {
+    const int j = cap_rows - 1;
+    mesh.triangle.push_back({vertex(i, wall_rows + j), vertex(i + 1, wall_rows + j), apex});
+    mesh.uv.push_back({cap_uv(i, j), cap_uv(i + 1, j), centre});
+  }
+  return mesh;
+}
+
 /// Point of the beanie's outline (distance from the axis, height), s in [0,1] from the brim's edge to the apex: a wall
 /// with a thick folded brim, then a quarter ellipse.
 dvec2 beanie_outline(double radius, double height, double s) {
@@ -64,6 +119,7 @@ dvec2 beanie_outline(double radius, double height, double s) {
   const double brim = 0.5 - 0.5 * std::tanh((p.y - 0.22 * height) / (0.02 * height));
   const double lip = std::exp(-std::pow(p.y / (0.03 * height), 2.0));
   p.x += radius * (0.06 * brim - 0.02 * lip);
+  if (s == 1) p.x = 0;
   return p;
 }
 
@@ -128,55 +184,44 @@ BaseMesh make_pillow(double width, double height, double thickness, int nu, int 
 BaseMesh make_beanie(double radius, double height, int nu, int nv) {
   check_sizes("beanie", {radius, height}, {nu}, 8);
   check_sizes("beanie", {}, {nv}, 4);
-  // Outline by arc length, from a fine polyline.
-  constexpr int kFine = 4096;
-  std::vector<dvec2> outline(kFine + 1);
-  std::vector<double> arc(kFine + 1, 0.0);
-  for (int i = 0; i <= kFine; ++i) {
-    const size_t k = static_cast<size_t>(i);
-    outline[k] = beanie_outline(radius, height, double(i) / kFine);
-    if (i > 0) arc[k] = arc[k - 1] + glm::length(outline[k] - outline[k - 1]);
-  }
-  outline.back().x = 0;
-  const double total = arc.back(), crown = 0.42 * radius;  // arc length of the cap, apex to rim
-  const auto at_arc = [&](double length) {
-    const size_t k = std::min<size_t>(
-        kFine - 1, static_cast<size_t>(std::upper_bound(arc.begin(), arc.end(), length) - arc.begin()) - 1);
-    const double f = (length - arc[k]) / (arc[k + 1] - arc[k]);
-    return outline[k] + f * (outline[k + 1] - outline[k]);
-  };
+  const ArcLength outline([&](double s) { return beanie_outline(radius, height, s); });
+  return finished(make_capped_tube(
+                      nu, nv, radius, outline.total(),
+                      [&](double angle, double length) {
+                        const dvec2 p = outline.at(length);
+                        return dvec3(p.x * std::cos(angle), p.x * std::sin(angle), p.y);
+                      },
+                      dvec3(0, 0, height)),
+                  "beanie");
+}
 
-  BaseMesh mesh;
-  const int cap_rows = std::max(2, nv / 4), wall_rows = std::max(2, nv - cap_rows);
-  const auto add_ring = [&](double length) {
-    const dvec2 p = at_arc(length);
-    for (int i = 0; i < nu; ++i) {
-      const double angle = 2 * kPi * i / nu;
-      mesh.position.emplace_back(p.x * std::cos(angle), p.x * std::sin(angle), p.y);
-    }
+// A tube swept along leg, bend and foot. (t, n, b) is right-handed with t along the spine and n towards heel and sole.
+BaseMesh make_sock(double radius, double height, double length, int nu, int nv) {
+  check_sizes("sock", {radius, height, length}, {nu}, 8);
+  check_sizes("sock", {}, {nv}, 8);
+  const double bend = 1.3 * radius, toe = 1.5 * radius, turn = 0.5 * kPi * bend;
+  if (height < bend + radius || length < bend + toe)
+    user_error("sock: a leg of {:g} m and a foot of {:g} m are too short for radius {:g} m; at least {:.3g} and {:.3g}",
+               height, length, radius, bend + radius, bend + toe);
+  const double leg = height - bend, spine = leg + turn + length - bend;
+  // Distance along the spine, and share of the radius there.
+  const auto profile = [&](double s) {
+    const double along = s * spine, t = std::max(0.0, (along - (spine - toe)) / toe);
+    return dvec2(along, radius * std::sqrt(std::max(0.0, 1 - t * t)));
   };
-  for (int j = 0; j <= wall_rows; ++j) add_ring((total - crown) * j / wall_rows);
-  for (int j = 1; j < cap_rows; ++j) add_ring(total - crown + crown * j / cap_rows);
-  const uint32_t apex = static_cast<uint32_t>(mesh.position.size());
-  mesh.position.emplace_back(0, 0, height);
-
-  const auto vertex = [&](int i, int j) { return static_cast<uint32_t>(j * nu + i % nu); };
-  add_grid(mesh, nu, wall_rows, vertex,
-           [&](int i, int j) { return dvec2(2 * kPi * radius * i / nu, (total - crown) * j / wall_rows); });
-  // Cap: azimuthal equidistant about the apex, above the wall's chart.
-  const dvec2 centre(kPi * radius, total + crown);
-  const auto cap_uv = [&](int i, int j) {
-    const double angle = 2 * kPi * i / nu, r = crown * (1 - double(j) / cap_rows);
-    return centre + r * dvec2(std::cos(angle), std::sin(angle));
+  const ArcLength outline(profile);
+  const auto place = [&](double angle, double arc) {
+    const dvec2 p = outline.at(arc);
+    const double theta = std::clamp((p.x - leg) / bend, 0.0, 0.5 * kPi);
+    const dvec3 t(std::sin(theta), 0, -std::cos(theta)), n(-std::cos(theta), 0, -std::sin(theta)), b(0, 1, 0);
+    const dvec3 at = p.x < leg          ? dvec3(0, 0, height - p.x)
+                     : p.x < leg + turn ? dvec3(bend, 0, bend) + bend * n
+                                        : dvec3(bend + p.x - leg - turn, 0, 0);
+    const double heel = 0.22 * std::pow(std::sin(2 * theta), 2.0) * std::max(0.0, std::cos(angle));
+    const double foot = glm::smoothstep(0.0, 1.0, theta / (0.5 * kPi));  // a foot is wider than high
+    return at + p.y * ((1 + heel - 0.12 * foot) * std::cos(angle) * n + (1 + 0.1 * foot) * std::sin(angle) * b);
   };
-  add_grid(
-      mesh, nu, cap_rows - 1, [&](int i, int j) { return vertex(i, wall_rows + j); }, cap_uv);
-  for (int i = 0; i < nu; ++i) {
-    const int j = cap_rows - 1;
-    mesh.triangle.push_back({vertex(i, wall_rows + j), vertex(i + 1, wall_rows + j), apex});
-    mesh.uv.push_back({cap_uv(i, j), cap_uv(i + 1, j), centre});
-  }
-  return finished(std::move(mesh), "beanie");
+  return finished(make_capped_tube(nu, nv, radius, outline.total(), place, dvec3(length, 0, 0)), "sock");
 }
 
 // In polar coordinates of the flat cloth (rho, theta): the profile follows a sphere a little larger than the obstacle

@@ -12,6 +12,7 @@ BaseMesh load_mesh(const MeshSource& s, const Loaders& loaders) {
   if (s.generator == "tube") return make_tube(s.radius, s.height, s.nu, s.nv);
   if (s.generator == "pillow") return make_pillow(s.width, s.height, s.thickness, s.nu, s.nv);
   if (s.generator == "beanie") return make_beanie(s.radius, s.height, s.nu, s.nv);
+  if (s.generator == "sock") return make_sock(s.radius, s.height, s.length, s.nu, s.nv);
   if (s.generator == "draped_square") return make_draped_square(s.size, s.sphere_radius, s.nu);
   bug("mesh generator \"{}\" passed the schema but has no maker", s.generator);
 }

@@ -21,8 +21,8 @@ struct Transform {
 /// A mesh: a file, or one of the bundled generators with its sizes (metres).
 struct MeshSource {
   std::filesystem::path file;  ///< absolute; empty when generated
-  std::string generator;       ///< swatch, tube, pillow, beanie, draped_square
-  double width = 0, height = 0, radius = 0, thickness = 0, size = 0, sphere_radius = 0;
+  std::string generator;       ///< swatch, tube, pillow, beanie, sock, draped_square
+  double width = 0, height = 0, radius = 0, thickness = 0, length = 0, size = 0, sphere_radius = 0;
   int nu = 0, nv = 0;
 };
 

@@ -40,9 +40,13 @@ MeshSource mesh_of(const JsonNode& node) {
     mesh.file = node["file"].text;
   } else {
     mesh.generator = node["generator"].text;
-    const std::pair<const char*, double*> sizes[] = {{"width", &mesh.width},   {"height", &mesh.height},
-                                                     {"radius", &mesh.radius}, {"thickness", &mesh.thickness},
-                                                     {"size", &mesh.size},     {"sphere_radius", &mesh.sphere_radius}};
+    const std::pair<const char*, double*> sizes[] = {{"width", &mesh.width},
+                                                     {"height", &mesh.height},
+                                                     {"radius", &mesh.radius},
+                                                     {"thickness", &mesh.thickness},
+                                                     {"length", &mesh.length},
+                                                     {"size", &mesh.size},
+                                                     {"sphere_radius", &mesh.sphere_radius}};
     for (const auto& [key, value] : sizes)
       if (node.has(key)) *value = number_of(node, key);
     mesh.nu = integer_of(node, "nu");

@@ -83,6 +83,8 @@ Type mesh() {
                           size("thickness", "0.08", "in the middle"), nu("48"), nv("48")})},
        {"beanie",
         object({size("radius", "0.1", "of the brim"), size("height", "0.2", "from brim to top"), nu("96"), nv("48")})},
+       {"sock", object({size("radius", "0.04", "of the leg"), size("height", "0.2", "of the leg"),
+                        size("length", "0.22", "of the foot"), nu("96"), nv("96")})},
        {"draped_square", object({size("size", "0.3", "side of the cloth"),
                                  size("sphere_radius", "0.08", "of the sphere below, at the origin"), nu("64")})}});
   const auto named = object({{"file", file(), "OBJ, PLY or OFF", "", true}});

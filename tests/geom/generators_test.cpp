@@ -84,6 +84,27 @@ TEST(Generators, BeanieIsClosedAboveAndOpenBelow) {
   EXPECT_NEAR(hi.x, 0.09 * 1.06, 0.002);
 }
 
+TEST(Generators, SockIsClosedAtTheToeAndOpenAtTheCuff) {
+  const BaseMesh mesh = make_sock(0.04, 0.2, 0.22, 64, 80);
+  expect_consistent(mesh);
+  const MeshReport report = validate(mesh);
+  EXPECT_EQ(report.boundary_edges, 64u);
+  EXPECT_EQ(find_charts(mesh).size(), 2u);
+  EXPECT_LT(report.stretch_median.y, 1.1);
+  dvec3 lo(1), hi(-1);
+  double enclosed = 0;
+  for (const auto& t : mesh.triangle) {
+    const dvec3 a = mesh.position[t[0]], b = mesh.position[t[1]], c = mesh.position[t[2]];
+    enclosed += glm::dot(a - dvec3(0, 0, 0.2), glm::cross(b - a, c - a)) / 6;  // the cuff's plane adds nothing
+    for (const dvec3& p : {a, b, c}) lo = glm::min(lo, p), hi = glm::max(hi, p);
+  }
+  EXPECT_NEAR(hi.z, 0.2, 1e-12);
+  EXPECT_NEAR(hi.x, 0.22, 1e-12);
+  EXPECT_NEAR(hi.y, 0.044, 1e-3);
+  EXPECT_GT(enclosed, 0.9e-3);  // faces look outwards; a tube of leg and foot holds 0.0016 m^3
+  EXPECT_LT(enclosed, 2e-3);
+}
+
 TEST(Generators, DrapedSquareKeepsItsGapToTheSphere) {
   for (const double size : {0.3, 0.6, 1.0}) {
     const double radius = 0.15;
@@ -105,6 +126,7 @@ TEST(Generators, SizesOutOfRangeAreRefused) {
   EXPECT_THROW(make_swatch(1, NAN, 2, 2), Error);
   EXPECT_THROW(make_tube(1, 1, 2, 2), Error);
   EXPECT_THROW(make_beanie(1, 1, 8, 1), Error);
+  EXPECT_THROW(make_sock(0.04, 0.05, 0.22, 64, 80), Error);
   EXPECT_THROW(make_draped_square(1, 1, 100000), Error);
 }
 
