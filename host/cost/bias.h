@@ -28,6 +28,8 @@ struct Bias {
   static constexpr double kQuantile = 1.96;  ///< 95 % of a normal distribution: a sum over thousands of pixels
   double low() const { return relative_mse - kQuantile * standard_error; }
   double high() const { return relative_mse + kQuantile * standard_error; }
+  /// Upper limit of what cannot be below 0, where it is not resolved.
+  double limit() const { return (relative_mse > 0 ? relative_mse : 0) + kQuantile * standard_error; }
   bool known() const;
   /// The interval does not hold 0, or there is no noise at all.
   bool resolved() const { return known() && (low() > 0 || (standard_error == 0 && relative_mse == 0)); }

@@ -33,15 +33,12 @@ Clock started_now() {
   return [begin] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
 }
 
-// Nothing is written unless all can be.
-void prepare_folder(const fs::path& folder) {
+// Whatever would keep the report from being written is found before the long work; nothing is made yet.
+void require_folder(const fs::path& folder) {
   std::error_code error;
   if (fs::exists(folder, error) && !fs::is_directory(folder, error))
     user_error("-o {}: this is a file; give a folder", folder.string());
-  fs::create_directory(folder, error);
-  if (!fs::is_directory(folder, error))
-    user_error("-o {}: cannot be made: {}", folder.string(), error ? error.message() : "its parent does not exist");
-  require_writable_path(folder / "cost.json");
+  require_writable_path(fs::exists(folder, error) ? folder / "cost.json" : folder);
   require_image_coder();
   require_library(kPainterLibrary);
 }
@@ -116,7 +113,7 @@ std::vector<ParetoPoint> points_of(const CostReport& report) {
                   root(r.bias.high()),
                   r.bias.resolved(),
                   group};
-    if (!p.resolved) p.bias = p.high;
+    if (!p.resolved) p.bias = root(r.bias.limit());
     out.push_back(p);
   };
   add("the scene", "the scene", 0);
@@ -130,6 +127,9 @@ std::vector<ParetoPoint> points_of(const CostReport& report) {
 }
 
 void write_report(const CostReport& report, const fs::path& folder) {
+  std::error_code error;
+  fs::create_directory(folder, error);
+  if (error) user_error("-o {}: cannot be made: {}", folder.string(), error.message());
   write_text_file(folder / "cost.csv", report_csv(report));
   write_text_file(folder / "cost.json",
                   report_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
@@ -151,8 +151,8 @@ int run_cost(const CostArgs& args, const Loaders& loaders) {
   std::optional<GivenReference> given;
   if (!args.reference.empty()) given = read_reference(args);
   Levels levels = collect_levels(args.scene, overrides_of(args), wanted, size_of(args, given));
+  require_folder(args.output);
   const Device device = Device::open(one_device_number(args.device));
-  prepare_folder(args.output);
   catch_stop_signals();
   const double seconds = 60 * args.minutes;
   Experiment experiment(device, loaders, std::move(levels), std::move(given), seconds, clock, args.kernel_dir);

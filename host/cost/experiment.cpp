@@ -83,7 +83,7 @@ void Experiment::measure_geometry(size_t u) {
   double largest = 0;
   for (unsigned i = 0; i < kHitSeeds; ++i)
     for (const dvec3& hit : scenes_.first_hits(unit, kSurveySeed + i))
-      largest = std::max(largest, surface_->radii_from(hit));
+      if (!surface_->near_open_end(hit)) largest = std::max(largest, surface_->radii_from(hit));
   measured_[u].result.radii = largest;
 }
 

@@ -34,6 +34,13 @@ PlySurface::PlySurface(std::vector<Curve> curves) {
       reach = std::max(reach, 0.5 * glm::length(p[i + 1] - p[i]) + kReachRadii * curve.radius);
     }
   }
+  for (const Curve& curve : curves)
+    if (!curve.ghost_ends && !curve.points.empty()) {
+      ends_.push_back(curve.points.front()), ends_.push_back(curve.points.back());
+      end_reach_ = std::max(end_reach_, kEndRadii * curve.radius);
+    }
+  if (end_reach_ > 0) near_ends_.emplace(end_reach_);
+  for (size_t i = 0; i < ends_.size(); ++i) near_ends_->add(ends_[i], int(i));
   if (!(reach > 0)) return;
   middles_.emplace(reach);
   for (size_t i = 0; i < segments_.size(); ++i) middles_->add(0.5 * (segments_[i].start + segments_[i].end), int(i));
@@ -65,6 +72,13 @@ double PlySurface::radii_from(const dvec3& place) const {
   numbers.resize(segments_.size());
   std::iota(numbers.begin(), numbers.end(), 0);
   return among(place, numbers);
+}
+
+bool PlySurface::near_open_end(const dvec3& place) const {
+  bool near = false;
+  if (near_ends_)
+    near_ends_->visit_near(place, [&](int i) { near |= glm::length(ends_[size_t(i)] - place) < end_reach_; });
+  return near;
 }
 
 std::optional<PlySurface> ply_surface_of(const Device& device, const World& world) {

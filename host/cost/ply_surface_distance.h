@@ -28,6 +28,11 @@ class PlySurface {
   /// Distance of a place from the nearest surface, in radii of that ply.
   double radii_from(const dvec3& place) const;
 
+  /// Within kEndRadii of an open end. Where a yarn is cut follows its segments, so that ends lie elsewhere when curves
+  /// have others.
+  bool near_open_end(const dvec3& place) const;
+  static constexpr double kEndRadii = 10;
+
  private:
   struct Segment {
     dvec3 start, end;
@@ -38,7 +43,9 @@ class PlySurface {
   double among(const dvec3& place, std::span<const int> numbers) const;
 
   std::vector<Segment> segments_;
-  std::optional<NearPoints> middles_;
+  std::vector<dvec3> ends_;
+  double end_reach_ = 0;  ///< metres
+  std::optional<NearPoints> middles_, near_ends_;
 };
 
 /// The plies of a world as the device warps them; nothing where a fabric is held as a lattice, or there is none.

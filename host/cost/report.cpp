@@ -117,7 +117,7 @@ std::string figure(double value) {
 std::string bias_words(const Bias& bias) {
   if (!bias.known()) return fmt::format("too few repetitions ({})", bias.repetitions);
   if (bias.standard_error == 0 && bias.relative_mse == 0) return "none: the same pictures";
-  if (!bias.resolved()) return "not resolved, < " + percent(root(bias.high()));
+  if (!bias.resolved()) return "not resolved, < " + percent(root(bias.limit()));
   return fmt::format("{} [{}, {}]", percent(root(bias.relative_mse)), figure(100 * root(bias.low())),
                      figure(100 * root(bias.high())));
 }
@@ -177,7 +177,7 @@ std::string report_text(const CostReport& report) {
       "repetitions.\nBias: of the expected picture against the reference's, with its 95 % interval; change: the same "
       "against that of the scene as it is.\nFLIP is of mean pictures, against the reference, and holds noise. Radii: "
       "largest distance of a first hit from "
-      "the reference's surface.\n",
+      "the reference's surface, away from the ends of yarns.\n",
       report.scene, report.base_settings, report.reference_text, percent(report.reference_noise),
       figure(report.reference_flip), report.device, report.driver, report.time_kind);
   out += fmt::format("time       {} of {}{}\n", duration_text(report.seconds_used), duration_text(60 * report.minutes),

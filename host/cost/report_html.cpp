@@ -158,7 +158,8 @@ std::string report_html(const CostReport& report, const std::string& plot_svg) {
       "as "
       "it is. FLIP is of mean pictures and holds "
       "their noise; two halves of the reference differ by {}. Radii: largest distance of a first hit from the surface "
-      "of the reference&rsquo;s plies, in ply radii; only where the option changes geometry. MB on the device. Start: "
+      "of the reference&rsquo;s plies, in ply radii, away from the ends of yarns; only where the option changes "
+      "geometry. MB on the device. Start: "
       "knitting, warping, tree, programs.</p>\n",
       report.time_kind, figure(report.reference_flip));
   std::string hidden;

@@ -66,7 +66,7 @@ RunPlan plan_runs(std::span<const UnitPrice> prices, double seconds) {
     if (!dearest) return plan;
     kept[*dearest] = false;
   }
-  plan.repetitions = kWantedRepetitions;
+  plan.repetitions = std::clamp(int(seconds / kLongestRound), kWantedRepetitions, kMostRepetitions);
   while (plan.repetitions > kFewestRepetitions &&
          plan.repetitions * cycle(prices, samples_at(prices, kept, 0, dear)) > seconds)
     --plan.repetitions;

@@ -22,6 +22,7 @@ struct RunPlan {
 };
 
 constexpr int kWantedRepetitions = 8, kMostRepetitions = 32;
+constexpr double kLongestRound = 30;  ///< seconds of one repetition of all, where so many repetitions are enough
 
 /// Shares `seconds` among the units. All get the same samples, but those that cost more than kDearest times the middle
 /// one fewer. Where even kFewestRepetitions of the fewest samples take too long, the dearest are left out until the
