@@ -21,6 +21,9 @@ constexpr double kSurveyShare = 0.6, kUnitShare = 0.2, kWritingShare = 0.03;
 // Bytes on the device, and as many on the host, of a segment that is traced and shaded.
 constexpr double kSegmentBytes = 48;
 
+// Of a pixel of a repetition: its colour and its variance.
+constexpr double kPictureBytes = 6 * sizeof(float);
+
 double segments_of(const Scene& scene, const Loaders& loaders) {
   double sum = 0;
   for (const FabricScene& fabric : scene.fabrics) {
@@ -71,7 +74,7 @@ std::string Experiment::too_large(const Unit& unit) const {
   if (const double most = double(memory_to_use(device_.traits())); bytes > most)
     return fmt::format("needs about {:.1f} GB on the device, of {:.1f} GB that may be used", 1e-9 * bytes, 1e-9 * most);
   const double at_base = segments_of(levels_.units[0].scene, loaders_);
-  const double start = at_base > 0 ? measured_[0].result.start.all() * segments / at_base : 0;
+  const double start = at_base > 0 ? measured_[0].result.start.geometry() * segments / at_base : 0;
   if (start > kUnitShare * seconds_)
     return fmt::format("would take about {} before its first ray; give more --minutes", duration_text(start));
   return {};
@@ -118,8 +121,12 @@ bool Experiment::survey_unit(size_t u) {
 void Experiment::survey(const Tell& tell) {
   std::vector<size_t> order = {0};
   if (levels_.reference != 0) order.push_back(levels_.reference);
-  for (size_t u = 0; u < levels_.units.size(); ++u)
-    if (std::find(order.begin(), order.end(), u) == order.end()) order.push_back(u);
+  // Presets next: if the time does not allow all levels, these are the last to go.
+  for (const bool presets : {true, false})
+    for (const Level& row : levels_.rows)
+      if (row.unit && (row.option == "preset") == presets &&
+          std::find(order.begin(), order.end(), *row.unit) == order.end())
+        order.push_back(*row.unit);
   for (size_t k = 0; k < order.size(); ++k) {
     const size_t u = order[k];
     const Unit& unit = levels_.units[u];
@@ -160,8 +167,14 @@ void Experiment::measure(const Tell& tell) {
     if (measured_[u].result.left_out.empty()) units.push_back(u);
   std::stable_partition(units.begin(), units.end(), [&](size_t u) { return u == 0 || u == levels_.reference; });
   for (const size_t u : units) prices.push_back(measured_[u].price);
+  const FilmScene& film = levels_.units[0].scene.film;
+  const double bytes = kPictureBytes * double(units.size()) * film.width * film.height;
+  const int most = int(std::min(double(memory_to_use(device_.traits())) / bytes, double(kMostRepetitions)));
+  if (most < kFewestRepetitions)
+    user_error("--size {}x{}: pictures of {} repetitions of {} levels do not fit into memory; give a smaller --size",
+               film.width, film.height, kFewestRepetitions, units.size());
   const double time = left() - kWritingShare * seconds_;
-  const RunPlan plan = plan_runs(prices, time);
+  const RunPlan plan = plan_runs(prices, time, most);
   if (plan.repetitions == 0)
     user_error(
         "--minutes {:.3g}: {} of them are left after the first pass, and the scene and its reference alone need "

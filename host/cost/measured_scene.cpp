@@ -55,13 +55,13 @@ void MeasuredScenes::forget(const Unit& unit) {
   }
 }
 
-Rendered MeasuredScenes::run(const Unit& unit, int samples, unsigned seed, bool aovs, std::function<void()> ready) {
+Rendered MeasuredScenes::run(const Unit& unit, int samples, unsigned seed, std::function<void()> ready) {
   const std::shared_ptr<const Prepared> geometry = prepare(unit);
   IntegratorScene integrator = unit.scene.integrator;
   integrator.seed = seed;
   RenderOptions options;
   options.spp = samples;
-  options.aovs = aovs;
+  options.aovs = true;  // as for an .exr, so that first hits and pictures come from the same programs
   options.kernel_dir = kernel_dir_;
   options.ready = std::move(ready);
   return render(device_, geometry->world, *geometry->on_device, integrator, options);
@@ -69,7 +69,7 @@ Rendered MeasuredScenes::run(const Unit& unit, int samples, unsigned seed, bool 
 
 Repetition MeasuredScenes::render_once(const Unit& unit, int samples, unsigned seed) {
   double begun = 0;
-  const Rendered r = run(unit, samples, seed, false, [&] { begun = cpu_seconds(); });
+  const Rendered r = run(unit, samples, seed, [&] { begun = cpu_seconds(); });
   Repetition out;
   out.cpu = cpu_seconds() - begun;
   out.wall = r.seconds;
@@ -89,7 +89,7 @@ Repetition MeasuredScenes::render_once(const Unit& unit, int samples, unsigned s
 }
 
 Hits MeasuredScenes::first_hits(const Unit& unit, unsigned seed) {
-  const Rendered r = run(unit, 1, seed, true, {});
+  const Rendered r = run(unit, 1, seed, {});
   const size_t stride = r.image.channels.size(), place = channel(r.image, "position.X"),
                ply = channel(r.image, "ply.id"), covered = channel(r.image, "coverage");
   Hits out;

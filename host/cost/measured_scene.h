@@ -15,7 +15,8 @@ namespace wale::cost {
 struct StartPrice {
   double knit = 0, warp = 0, tree = 0, programs = 0;
   uint64_t bytes = 0;
-  double all() const { return knit + warp + tree + programs; }
+  double geometry() const { return knit + warp + tree; }
+  double all() const { return geometry() + programs; }
 };
 
 /// Geometry of a unit, ready to be rendered.
@@ -25,7 +26,7 @@ struct Prepared {
   StartPrice start;  ///< without programs
 };
 
-/// One render: its picture, its noise and what it took. Times are of the rays alone.
+/// One render as for an .exr: its picture, its noise and what it took. Times are of the rays alone.
 struct Repetition {
   Picture picture;
   std::vector<float> variance;  ///< of each value of the picture
@@ -55,7 +56,7 @@ class MeasuredScenes {
   Hits first_hits(const Unit& unit, unsigned seed);
 
  private:
-  Rendered run(const Unit& unit, int samples, unsigned seed, bool aovs, std::function<void()> ready);
+  Rendered run(const Unit& unit, int samples, unsigned seed, std::function<void()> ready);
 
   const Device& device_;
   const Loaders& loaders_;

@@ -110,8 +110,10 @@ const UnitResult* CostReport::result(const Level& row) const {
 
 std::string figure(double value) {
   if (value == 0) return "0";
-  const int digits = std::max(0, 2 - int(std::floor(std::log10(std::abs(value)))));
-  return digits > 6 || std::abs(value) >= 1e6 ? fmt::format("{:.2e}", value) : fmt::format("{:.{}f}", value, digits);
+  if (std::abs(value) >= 999.5 && std::abs(value) < 1e6) return fmt::format("{:.0f}", value);
+  std::string out = fmt::format("{:#.3g}", value);
+  if (out.ends_with('.')) out.pop_back();
+  return out;
 }
 
 std::string bias_words(const Bias& bias) {

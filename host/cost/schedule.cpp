@@ -48,7 +48,7 @@ double least_seconds(std::span<const UnitPrice> prices) {
   return sum;
 }
 
-RunPlan plan_runs(std::span<const UnitPrice> prices, double seconds) {
+RunPlan plan_runs(std::span<const UnitPrice> prices, double seconds, int most_repetitions) {
   RunPlan plan;
   plan.samples.assign(prices.size(), 0);
   plan.predicted.assign(prices.size(), 0);
@@ -66,7 +66,7 @@ RunPlan plan_runs(std::span<const UnitPrice> prices, double seconds) {
     if (!dearest) return plan;
     kept[*dearest] = false;
   }
-  plan.repetitions = std::clamp(int(seconds / kLongestRound), kWantedRepetitions, kMostRepetitions);
+  plan.repetitions = std::min(std::max(int(seconds / kLongestRound), kWantedRepetitions), most_repetitions);
   while (plan.repetitions > kFewestRepetitions &&
          plan.repetitions * cycle(prices, samples_at(prices, kept, 0, dear)) > seconds)
     --plan.repetitions;
@@ -76,7 +76,7 @@ RunPlan plan_runs(std::span<const UnitPrice> prices, double seconds) {
     (plan.repetitions * cycle(prices, samples_at(prices, kept, half, dear)) <= seconds ? low : high) = half;
   }
   plan.samples = samples_at(prices, kept, low, dear);
-  plan.repetitions = std::clamp(int(seconds / cycle(prices, plan.samples)), plan.repetitions, kMostRepetitions);
+  plan.most_repetitions = std::max(plan.repetitions, most_repetitions);
   for (size_t u = 0; u < prices.size(); ++u)
     if (plan.samples[u])
       plan.predicted[u] = plan.samples[u] * prices[u].seconds_per_sample + prices[u].seconds_per_visit;
@@ -86,11 +86,11 @@ RunPlan plan_runs(std::span<const UnitPrice> prices, double seconds) {
 bool run_interleaved(const RunPlan& plan, double deadline, const Clock& clock,
                      const std::function<bool(size_t, int, int)>& render) {
   double planned = 0, taken = 0;
-  for (int repetition = 0; repetition < plan.repetitions; ++repetition)
+  for (int repetition = 0; repetition < std::max(plan.repetitions, plan.most_repetitions); ++repetition)
     for (size_t u = 0; u < plan.samples.size(); ++u) {
       if (plan.samples[u] == 0) continue;
       const double begun = clock(), slower = planned > 0 ? taken / planned : 1;
-      if (begun + plan.predicted[u] * slower > deadline) return false;
+      if (begun + plan.predicted[u] * slower > deadline) return repetition >= plan.repetitions;
       if (!render(u, repetition, plan.samples[u])) return false;
       planned += plan.predicted[u];
       taken += clock() - begun;
