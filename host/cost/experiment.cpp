@@ -141,6 +141,14 @@ void Experiment::survey(const Tell& tell) {
       continue;
     }
     try {
+      // Of a given reference's own level the geometry alone is wanted, unless it has a row.
+      const auto has_row = [&](const Level& row) { return row.unit == u; };
+      if (u == levels_.reference && given_ && std::none_of(levels_.rows.begin(), levels_.rows.end(), has_row)) {
+        surface_ = ply_surface_of(device_, scenes_.prepare(unit)->world);
+        measure_geometry(0);
+        leave_out(u, "no level");
+        continue;
+      }
       if (!needed(u) && !scenes_.keeps(unit))
         if (const std::string why = too_large(unit); !why.empty()) {
           leave_out(u, why);

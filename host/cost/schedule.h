@@ -16,8 +16,8 @@ struct UnitPrice {
 
 /// How often each picture is rendered, and with how many samples.
 struct RunPlan {
-  int repetitions = 0;       ///< that the time is sure to allow
-  int most_repetitions = 0;  ///< that are made where time is left
+  int repetitions = 0;            ///< that the time is sure to allow
+  int most_repetitions = 0;       ///< that are made where time is left
   std::vector<int> samples;       ///< per unit, of every pixel and repetition, multiples of kScrambles; 0: left out
   std::vector<double> predicted;  ///< per unit, seconds of one repetition
 };

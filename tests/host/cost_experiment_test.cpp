@@ -15,21 +15,23 @@ constexpr const char* kScene = R"({"wale": 1, "units": "mm", "camera": {"positio
  "fabrics": [{"name": "cloth", "mesh": {"generator": "swatch", "width": 20, "height": 20},
   "pattern": {"builtin": "stockinette"}, "gauge": {"wales": 30}, "material": "yarn"}]})";
 constexpr double kSeconds = 4;
+constexpr size_t kRounds = 8;
 
 const Loaders kLoaders{[](const auto& file) { return read_mesh(file); },
                        [](const auto& file) { return read_image(file, true); }};
 
 class CostExperiment : public testing::Test {
  protected:
-  // The clock stands: what other programs on the machine do leaves the plan as it is.
-  CostReport run(const std::string& options, const std::vector<std::string>& set = {},
+  // The clock stands, so that what other programs on the machine do leaves the plan as it is, until kRounds are done.
+  CostReport run(const std::string& options, double seconds, const std::vector<std::string>& set = {},
                  std::optional<GivenReference> given = {}) {
-    Experiment experiment(test::device(), kLoaders,
-                          collect_levels(folder_.write("scene.json", kScene), set, wanted_options(options), {24, 24}),
-                          std::move(given), kSeconds, [] { return 0.0; }, {});
-    const auto silent = [](const std::string&, double) {};
-    experiment.survey(silent);
-    experiment.measure(silent);
+    Levels levels = collect_levels(folder_.write("scene.json", kScene), set, wanted_options(options), {24, 24});
+    const size_t renders = kRounds * levels.units.size();
+    size_t begun = 0;
+    Experiment experiment(test::device(), kLoaders, std::move(levels), std::move(given), seconds,
+                          [&] { return begun > renders ? 2 * seconds : 0; }, {});
+    experiment.survey([](const std::string&, double) {});
+    experiment.measure([&](const std::string&, double) { ++begun; });
     return experiment.report();
   }
   const UnitResult& find(const CostReport& report, const std::string& option, const std::string& level) {
@@ -41,7 +43,7 @@ class CostExperiment : public testing::Test {
 };
 
 TEST_F(CostExperiment, RanksLevelsThatAreFarApart) {
-  const CostReport report = run("depth,light_sampling,curves");
+  const CostReport report = run("depth,light_sampling,curves", 2 * kSeconds);
   for (const UnitResult& r : report.results) {
     EXPECT_EQ(r.left_out, "");
     EXPECT_GE(r.repetitions, kFewestRepetitions);
@@ -81,7 +83,7 @@ TEST_F(CostExperiment, RanksLevelsThatAreFarApart) {
 }
 
 TEST_F(CostExperiment, AGivenReferenceIsCompared) {
-  const CostReport made = run("depth", {"integrator.max_depth=4", "fabrics.*.tolerance=0.2"});
+  const CostReport made = run("depth", kSeconds, {"integrator.max_depth=4", "fabrics.*.tolerance=0.2"});
   // Of depth 4: the scene as it is has no bias against it, and a deeper one has.
   GivenReference given{"given.exr", find(made, "depth", "4").mean, {}, "depth 4", 64};
   given.variance.assign(given.picture.rgb.size(), 0.0f);
@@ -91,7 +93,7 @@ TEST_F(CostExperiment, AGivenReferenceIsCompared) {
   for (size_t p = 0; p < weights.size(); ++p)
     for (size_t c = 0; c < 3; ++c)
       given.variance[3 * p + c] = float(source.variance / paths / (weights[p] * 3 * double(weights.size())));
-  const CostReport report = run("depth", {"integrator.max_depth=4", "fabrics.*.tolerance=0.2"}, given);
+  const CostReport report = run("depth", kSeconds, {"integrator.max_depth=4", "fabrics.*.tolerance=0.2"}, given);
   EXPECT_NE(report.reference_text.find("given.exr"), std::string::npos);
   EXPECT_FALSE(report.reference_made);
   EXPECT_LT(find(report, "depth", "4").bias.relative_mse, 0.1 * find(report, "depth", "0").bias.relative_mse);

@@ -92,11 +92,13 @@ TEST(CostSchedule, AFastMachineRepeatsMore) {
   const RunPlan plan = plan_runs(kPrices, 100);
   double now = 0;
   int last = 0;
-  EXPECT_TRUE(run_interleaved(plan, 100, [&] { return now; }, [&](size_t u, int repetition, int) {
-    now += 0.5 * plan.predicted[u];
-    last = repetition;
-    return true;
-  }));
+  EXPECT_TRUE(run_interleaved(
+      plan, 100, [&] { return now; },
+      [&](size_t u, int repetition, int) {
+        now += 0.5 * plan.predicted[u];
+        last = repetition;
+        return true;
+      }));
   EXPECT_GT(last + 1, 3 * plan.repetitions / 2);
   EXPECT_LE(now, 100);
   EXPECT_EQ(plan_runs(kPrices, 100, 6).most_repetitions, 6);
