@@ -153,15 +153,16 @@ std::string report_text(const CostReport& report) {
       continue;
     }
     const std::optional<double> radii = radii_of(report, row);
-    rows.push_back({row.option, row.level, figure(r->cpu_ns.middle), figure(r->wall_ns.middle), spread_text(r->time),
-                    spread_text(r->equal_noise), bias_of(report, row), change_of(report, row), figure(r->flip),
-                    radii ? figure(*radii) : "-", figure(1e-6 * double(r->start.bytes)), figure(r->start.all()),
-                    row_note(report, row)});
+    rows.push_back({row.option, row.level, figure(r->cpu_ns.middle), figure(r->wall_ns.middle), figure(r->variance),
+                    spread_text(r->time), spread_text(r->equal_noise), bias_of(report, row), change_of(report, row),
+                    figure(r->flip), radii ? figure(*radii) : "-", figure(1e-6 * double(r->start.bytes)),
+                    figure(r->start.all()), row_note(report, row)});
   }
   std::string out = table({{"option", true},
                            {"level", true},
                            {"CPU ns"},
                            {"wall ns"},
+                           {"variance"},
                            {"time a path"},
                            {"time to equal noise"},
                            {"bias (relative RMS)", true},
@@ -175,7 +176,8 @@ std::string report_text(const CostReport& report) {
   out += fmt::format(
       "\nscene      {}: {}\nreference  {}\n           noise of its mean {} (relative RMS); FLIP of its two halves {}\n"
       "device     {} ({})\n"
-      "CPU and wall: ns a path. Times over those of the scene as it is, by {} time: median [least, largest] of the "
+      "CPU and wall: ns a path. Variance: of one path, over the square of the local mean. Times over those of the "
+      "scene as it is, by {} time: median [least, largest] of the "
       "repetitions.\nBias: of the expected picture against the reference's, with its 95 % interval; change: the same "
       "against that of the scene as it is.\nFLIP is of mean pictures, against the reference, and holds noise. Radii: "
       "largest distance of a first hit from "

@@ -108,12 +108,14 @@ std::string table_row(const CostReport& report, const Level& row) {
       fmt::format("<tr{}><td>{}</td><td>{}</td>", classes, escaped(row.option), escaped(row.level));
   const UnitResult* r = report.result(row);
   if (!r)
-    return names + fmt::format("<td class=out colspan=11>left out: {}</td></tr>\n",
+    return names + fmt::format("<td class=out colspan=12>left out: {}</td></tr>\n",
                                escaped(row.unit ? report.results[*row.unit].left_out : row.skipped));
   const std::optional<double> radii = radii_of(report, row);
   std::string bias = escaped(bias_of(report, row));
   if (row.beyond) bias += "<small> (beyond the reference)</small>";
-  return names + fmt::format("<td>{}</td><td>{}</td>", figure(r->cpu_ns.middle), figure(r->wall_ns.middle)) +
+  return names +
+         fmt::format("<td>{}</td><td>{}</td><td>{}</td>", figure(r->cpu_ns.middle), figure(r->wall_ns.middle),
+                     figure(r->variance)) +
          spread_cell(r->time) + spread_cell(r->equal_noise) +
          fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", bias,
                      escaped(change_of(report, row)), figure(r->flip), radii ? figure(*radii) : "&ndash;",
@@ -124,7 +126,7 @@ std::string table_row(const CostReport& report, const Level& row) {
 constexpr const char* kStyle =
     R"(body{font:15px/1.45 sans-serif;color:#222;max-width:1180px;margin:2em auto;padding:0 1em}
 table{border-collapse:collapse;font-size:13px;width:100%}td,th{padding:3px 8px;border-bottom:1px solid #ddd;text-align:right;vertical-align:top}
-td:nth-child(1),td:nth-child(2),th:nth-child(1),th:nth-child(2),td.out{text-align:left}td:nth-child(7),td:nth-child(8),th:nth-child(7),th:nth-child(8){text-align:left}
+td:nth-child(1),td:nth-child(2),th:nth-child(1),th:nth-child(2),td.out{text-align:left}td:nth-child(8),td:nth-child(9),th:nth-child(8),th:nth-child(9){text-align:left}
 tr.own{background:#eef4fa}.out,small{color:#777}.levels{display:flex;flex-wrap:wrap;gap:14px}figure{margin:0}figcaption{font-size:13px;max-width:530px}
 img{image-rendering:pixelated;margin-right:4px}svg{max-width:100%;height:auto})";
 
@@ -146,7 +148,8 @@ std::string report_html(const CostReport& report, const std::string& plot_svg) {
   out +=
       "\n<p>Each level changes one option of the scene. A level on the grey stair is beaten by no other in both price "
       "and bias; a ring with an arrow is one whose bias noise hides: it lies at its upper limit.</p>\n"
-      "<h2>Levels</h2>\n<table><tr><th>option<th>level<th>CPU ns a path<th>wall ns<th>time a path<th>time to equal "
+      "<h2>Levels</h2>\n<table><tr><th>option<th>level<th>CPU ns a path<th>wall ns<th>variance<th>time a path<th>time "
+      "to equal "
       "noise<th>bias, relative RMS<th>change of the scene<th>FLIP<th>radii<th>MB<th>start s<th>samples</tr>\n";
   for (const Level& row : report.levels.rows) out += table_row(report, row);
   out += fmt::format(
