@@ -159,9 +159,13 @@ void Experiment::survey(const Tell& tell) {
         leave_out(u, "stopped before it was rendered");
       }
     } catch (const Error& error) {
-      // A level may not have room where the scene itself has.
-      if (error.fault() != Fault::user || needed(u)) throw;
+      // A level may not have room where the scene itself has; nor may the reference, whose part the scene then takes.
+      if (error.fault() != Fault::user || u == 0) throw;
       leave_out(u, error.what());
+      if (!needed(u)) continue;
+      reference_note_ = fmt::format("the scene itself, as a more accurate one cannot be held ({}): ", error.what());
+      levels_.reference = 0;
+      surface_ = ply_surface_of(device_, scenes_.prepare(levels_.units[0])->world);
     }
   }
 }
@@ -261,7 +265,7 @@ CostReport Experiment::report() {
   } else if (!reference.empty()) {
     out.reference = mean_of(reference);
     out.reference_text =
-        fmt::format("{} repetitions of {} samples a pixel: {}", reference.size(),
+        fmt::format("{}{} repetitions of {} samples a pixel: {}", reference_note_, reference.size(),
                     measured_[levels_.reference].result.samples, levels_.units[levels_.reference].settings);
   }
   if (out.reference.rgb.empty() || measured_[0].repetitions.empty())

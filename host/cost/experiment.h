@@ -58,7 +58,7 @@ class Experiment {
   MeasuredScenes scenes_;
   std::vector<Measured> measured_;
   std::optional<PlySurface> surface_;
-  std::string ended_;
+  std::string ended_, reference_note_;
 };
 
 }  // namespace wale::cost

@@ -1,9 +1,9 @@
 #include "host/cost/measured_scene.h"
 
-#include <unistd.h>
-
 #include <algorithm>
+#include <cstdio>
 #include <ctime>
+#include <fstream>
 
 #include "host/memory_needs.h"
 
@@ -102,10 +102,13 @@ Hits MeasuredScenes::first_hits(const Unit& unit, unsigned seed) {
 
 uint64_t memory_to_use(const DeviceTraits& traits) {
   uint64_t most = traits.global_bytes / 2;
-  if (traits.cpu) {
-    const uint64_t free = uint64_t(sysconf(_SC_AVPHYS_PAGES)) * uint64_t(sysconf(_SC_PAGESIZE));
-    // The world on the host takes about as much again.
-    most = std::min(most, free / 4);
+  if (!traits.cpu) return most;
+  // The device is the host, whose own part of the world takes about as much again; half is left to others.
+  std::ifstream memory("/proc/meminfo");
+  for (std::string line; std::getline(memory, line);) {
+    unsigned long long kilobytes = 0;
+    if (std::sscanf(line.c_str(), "MemAvailable: %llu kB", &kilobytes) == 1)
+      most = std::min<uint64_t>(most, 1024 * uint64_t(kilobytes) / 4);
   }
   return most;
 }

@@ -67,7 +67,7 @@ class MeasuredScenes {
   std::shared_ptr<const Prepared> passing_;
 };
 
-/// Memory that a process may fill on a device: half of it, and of what is free where the device is the host.
+/// Bytes that geometry may fill on a device: half of it; where the device is the host, a quarter of what is free.
 uint64_t memory_to_use(const DeviceTraits& traits);
 
 }  // namespace wale::cost

@@ -110,10 +110,8 @@ const UnitResult* CostReport::result(const Level& row) const {
 
 std::string figure(double value) {
   if (value == 0) return "0";
-  if (std::abs(value) >= 999.5 && std::abs(value) < 1e6) return fmt::format("{:.0f}", value);
-  std::string out = fmt::format("{:#.3g}", value);
-  if (out.ends_with('.')) out.pop_back();
-  return out;
+  if (std::abs(value) >= 99.95 && std::abs(value) < 1e6) return fmt::format("{:.0f}", value);
+  return fmt::format("{:#.3g}", value);
 }
 
 std::string bias_words(const Bias& bias) {

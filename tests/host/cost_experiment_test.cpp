@@ -100,6 +100,22 @@ TEST_F(CostExperiment, AGivenReferenceIsCompared) {
   EXPECT_TRUE(find(report, "depth", "0").bias.resolved());
 }
 
+// Where the preset "reference" has no room, the scene itself takes its part, and the report says so.
+TEST_F(CostExperiment, AReferenceThatDoesNotFitIsSaid) {
+  Levels levels = collect_levels(folder_.write("scene.json", kScene), {}, wanted_options("light_sampling"), {24, 24});
+  // Refused when it is built, as one that has no room is.
+  levels.units[levels.reference].scene.fabrics[0].color_image.file = folder_ / "none.png";
+  size_t begun = 0;
+  Experiment experiment(test::device(), kLoaders, std::move(levels), {}, kSeconds,
+                        [&] { return begun > 12 ? 2 * kSeconds : 0; }, {});
+  experiment.survey([](const std::string&, double) {});
+  experiment.measure([&](const std::string&, double) { ++begun; });
+  const CostReport report = experiment.report();
+  EXPECT_EQ(report.levels.reference, 0u);
+  EXPECT_NE(report.reference_text.find("the scene itself, as a more accurate one cannot be held ("), std::string::npos);
+  EXPECT_EQ(report.base().bias.relative_mse, 0);
+}
+
 TEST_F(CostExperiment, TooLittleTimeIsSaid) {
   Experiment experiment(test::device(), kLoaders,
                         collect_levels(folder_.write("scene.json", kScene), {}, wanted_options("depth"), {24, 24}), {},
