@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geom/error.h"
+#include "host/device_fault.h"
 #include "host/film.h"
 #include "host/progress.h"
 #include "host/stop.h"
@@ -159,15 +160,23 @@ void Experiment::survey(const Tell& tell) {
         leave_out(u, "stopped before it was rendered");
       }
     } catch (const Error& error) {
-      // A level may not have room where the scene itself has; nor may the reference, whose part the scene then takes.
-      if (error.fault() != Fault::user || u == 0) throw;
-      leave_out(u, error.what());
-      if (!needed(u)) continue;
-      reference_note_ = fmt::format("the scene itself, as a more accurate one cannot be held ({}): ", error.what());
-      levels_.reference = 0;
-      surface_ = ply_surface_of(device_, scenes_.prepare(levels_.units[0])->world);
+      if (error.fault() == Fault::bug || u == 0) throw;
+      cannot_render(u, error.what());
+    } catch (const cl::Error& error) {
+      if (u == 0) throw;
+      cannot_render(u, opencl_fault(error));
     }
   }
+}
+
+// A level may have no room where the scene itself has, or ask the device for what it does not do. So may the reference,
+// whose part the scene then takes.
+void Experiment::cannot_render(size_t u, const std::string& why) {
+  leave_out(u, why);
+  if (!needed(u)) return;
+  reference_note_ = fmt::format("the scene itself, as a more accurate one cannot be held ({}): ", why);
+  levels_.reference = 0;
+  surface_ = ply_surface_of(device_, scenes_.prepare(levels_.units[0])->world);
 }
 
 void Experiment::measure(const Tell& tell) {

@@ -47,6 +47,7 @@ class Experiment {
   bool needed(size_t u) const { return u == 0 || (u == levels_.reference && !given_); }
   double left() const { return seconds_ - clock_(); }
   void leave_out(size_t u, std::string why);
+  void cannot_render(size_t u, const std::string& why);
   void analyse(size_t u, const std::vector<double>& weights, const std::vector<Picture>& reference, CostReport& out);
 
   const Device& device_;

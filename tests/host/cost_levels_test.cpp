@@ -65,9 +65,21 @@ TEST_F(CostLevels, TheSceneItselfIsOneUnit) {
   EXPECT_EQ(size_t(shared), own.size());
 }
 
-TEST_F(CostLevels, FibresLieBeyondTheReference) {
-  for (const Level& row : of().rows)
-    EXPECT_EQ(row.beyond, row.option == "detail" && row.level == "fibres") << row.level;
+// As explicit fibres do: the preset keeps maps.
+TEST_F(CostLevels, LevelsPastThePresetsLieBeyondTheReference) {
+  const auto place = [](const AccuracyOption& option, const std::string& level) {
+    return option.level(level) - option.levels.data();
+  };
+  int beyond = 0;
+  for (const Level& row : of().rows) {
+    bool expected = false;
+    for (const auto& [option, level] : accuracy_preset("reference").levels)
+      if (option == row.option)
+        expected = place(accuracy_option(option), row.level) > place(accuracy_option(option), level);
+    EXPECT_EQ(row.beyond, expected) << row.option << " " << row.level;
+    beyond += row.beyond;
+  }
+  EXPECT_GT(beyond, 0);
 }
 
 // Options that programs and launches alone know of share the cloth on the device.
