@@ -83,7 +83,7 @@ int run_plan(const SceneArgs& args, const std::filesystem::path& json, const Loa
   const Scene scene = read_scene(args);
   const Device device = Device::open(one_device_number(args.device));
   const World world = world_of(scene, loaders, args.quiet);
-  const SceneDevice on_device(device, world, local_stage(scene.integrator));
+  const SceneDevice on_device(device, world, local_stage(scene.integrator), joints(scene.integrator));
   const Features features = analyse(world, scene.integrator, true, device.traits());
   deliver(json, plan_json(world, on_device, scene.integrator, features),
           plan_text(world, on_device, scene.integrator, features));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "geom/error.h"
 #include "host/ply_colors.h"
 #include "host/scene.h"
 #include "host/world.h"
@@ -13,7 +14,14 @@ namespace {
 // Quantised nodes are gone down in scalar code only, whatever vectors the scene asks for.
 void choose_traversal(Features& f, const IntegratorScene& integrator, const DeviceTraits& traits) {
   f.simt = quantised_tree(traits, f.local_stage);
-  f.lanes = f.simt ? 1 : integrator.lanes ? integrator.lanes : int(traits.lanes);
+  f.double_precision = integrator.precision == "double";
+  f.lanes = f.simt || f.double_precision ? 1 : integrator.lanes ? integrator.lanes : int(traits.lanes);
+}
+
+Normals normals_of(const IntegratorScene& integrator) {
+  return integrator.normals == "flat"     ? Normals::flat
+         : integrator.normals == "linear" ? Normals::linear
+                                          : Normals::rotation_minimising;
 }
 
 }  // namespace
@@ -33,6 +41,7 @@ std::string Features::options() const {
   define(lights, "W_HAS_LIGHTS");
   define(detail, "W_HAS_DETAIL");
   define(paper_lobes, "W_PAPER_LOBES");
+  define(double_precision, "W_DOUBLE");
   if (relaxed_math) out += " -cl-fast-relaxed-math";
   define(aovs, "W_AOVS");
   define(ply_colors, "W_HAS_PLY_COLORS");
@@ -47,6 +56,18 @@ LocalStage local_stage(const IntegratorScene& integrator) {
   return integrator.local_stage == "exact"  ? LocalStage::exact
          : integrator.local_stage == "cell" ? LocalStage::cell
                                             : LocalStage::ring;
+}
+
+Joints joints(const IntegratorScene& integrator) {
+  return integrator.joints == "open"      ? Joints::open
+         : integrator.joints == "capsule" ? Joints::capsule
+                                          : Joints::mitre;
+}
+
+// Told before anything is compiled.
+static void require_precision(const Features& f, const DeviceTraits& traits) {
+  if (f.double_precision && !traits.fp64)
+    user_error("integrator.precision: {} has no double precision (cl_khr_fp64); use \"float\"", traits.name);
 }
 
 Features analyse(const World& world, const IntegratorScene& integrator, bool aovs, const DeviceTraits& traits) {
@@ -69,7 +90,9 @@ Features analyse(const World& world, const IntegratorScene& integrator, bool aov
   f.aovs = aovs;
   f.ply_colors = !world.ply_colors.empty();
   f.local_stage = local_stage(integrator);
+  f.normals = normals_of(integrator);
   choose_traversal(f, integrator, traits);
+  require_precision(f, traits);
   return f;
 }
 
@@ -104,6 +127,7 @@ Features foresee(const Scene& scene, bool aovs, const DeviceTraits& traits) {
   f.relaxed_math = integrator.math == "relaxed";
   f.aovs = aovs;
   f.local_stage = local_stage(integrator);
+  f.normals = normals_of(integrator);
   choose_traversal(f, integrator, traits);
   return f;
 }
@@ -148,14 +172,18 @@ std::vector<Reason> explain(const World& world, const IntegratorScene& integrato
        : curves  ? "every fibre is a curve of its own"
                  : "no fabric in the scene"},
       {"Lambert ply lobes", f.paper_lobes, "integrator.ply_lobes is \"" + integrator.ply_lobes + "\""},
+      {"double precision", f.double_precision, "integrator.precision is \"" + integrator.precision + "\""},
       {"relaxed arithmetic", f.relaxed_math, "integrator.math is \"" + integrator.math + "\""},
       {"feature images", f.aovs, f.aovs ? "an .exr is written" : "only .png is written"},
       {"varying colours", f.ply_colors,
        f.ply_colors ? "fabrics: " + names(world.colored_fabrics, [](const auto& n) { return n; })
                     : "no plies, stripes, heather or color_image"},
       {"local stage " + integrator.local_stage, curves, curves ? "integrator.local_stage" : "no fabric in the scene"},
+      {"normals " + integrator.normals, curves, curves ? "integrator.normals" : "no fabric in the scene"},
+      {"joints " + integrator.joints, curves, curves ? "integrator.joints" : "no fabric in the scene"},
       {fmt::format("{} lanes", f.lanes), true,
-       f.simt             ? "one ray per work-item, down quantised nodes"
+       f.simt               ? "one ray per work-item, down quantised nodes"
+       : f.double_precision ? "integrator.precision is \"double\""
        : integrator.lanes ? "integrator.lanes"
                           : "width of the device's vectors"},
   };

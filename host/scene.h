@@ -162,6 +162,9 @@ struct IntegratorScene {
   std::string ply_shadows = "attenuated";  ///< attenuated, opaque
   std::string light_choice = "power";      ///< power, uniform
   std::string math = "exact";              ///< exact, relaxed
+  std::string joints = "mitre";            ///< open, capsule, mitre
+  std::string normals = "rotation-minimising";  ///< flat, linear, rotation-minimising
+  std::string precision = "float";              ///< float, double
   int lanes = 0;                           ///< 0 = from the device; 1, 8, 16
   unsigned pool = 0;                       ///< paths in flight; 0 = from the device
   unsigned seed = 0;

@@ -41,18 +41,18 @@ std::vector<FabricInput> fabric_inputs(const World& world) {
   return inputs;
 }
 
-FabricDevice upload(const Device& device, const World& world, LocalStage stage) {
+FabricDevice upload(const Device& device, const World& world, LocalStage stage, Joints joints) {
   const DriverCall guard;
-  return upload_fabrics(device, fabric_inputs(world), world.origin, stage);
+  return upload_fabrics(device, fabric_inputs(world), world.origin, stage, false, joints);
 }
 
-SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage stage)
+SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage stage, Joints joints)
     : device_(device),
       stage_(stage),
       simt_(quantised_tree(device.traits(), stage)),
       procedural_(
           std::any_of(world.fabrics.begin(), world.fabrics.end(), [](const Fabric& f) { return f.procedural; })),
-      fabric_(upload(device, world, stage)) {
+      fabric_(upload(device, world, stage, joints)) {
   const TriangleTree tree = build_triangle_tree(corners_of(world.triangles));
   ply_materials_ = Buffer<WPlyMaterial>(device, world.ply_materials);
   fibre_details_ = Buffer<WFibreDetail>(device, world.fibres.details);

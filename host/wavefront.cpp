@@ -118,8 +118,8 @@ void Wavefront::build_programs() {
   if (kernels_.contains("shade_ply")) {
     auto& k = kernel("shade_ply");
     next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1)));
-    set_args(k, next, scene_.frames(), scene_.ply_materials());
-    next += 2;
+    set_args(k, next, scene_.frames(), uint32_t(features_.normals), scene_.ply_materials());
+    next += 3;
     if (features_.detail) {
       set_args(k, next, scene_.fibre_details(), scene_.fibre_offsets(), scene_.fibre_candidates());
       set_args(k, next + 3, pixel_width(camera_));
@@ -131,8 +131,8 @@ void Wavefront::build_programs() {
   if (kernels_.contains("shade_fibre")) {
     auto& k = kernel("shade_fibre");
     next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1)));
-    set_args(k, next, scene_.frames(), scene_.fibre_materials());
-    next += 2;
+    set_args(k, next, scene_.frames(), uint32_t(features_.normals), scene_.fibre_materials());
+    next += 3;
     if (features_.ply_colors) set_args(k, next++, scene_.ply_colors());
     set_args(k, next, aov_.cl(), fibre_list_.cl(), queue_counts_.cl(), kHits + 3);
   }

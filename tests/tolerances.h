@@ -40,6 +40,10 @@ constexpr double kLessThanNoise = 1;       // the promise itself
 constexpr double kPixelsOfAnotherScale = 0.01;
 constexpr double kGrazingShare = 1e-3;     // rays within 1e-3 of a silhouette, |h| > 0.999, that float may decide otherwise
 
+// Levels of accuracy, in ply radii: hits against the curved ply (the seam's overlap, and float coordinates), and points
+// that are kept in 16 bits.
+constexpr double kJointSurface = 1e-4;
+
 // Statistics: a family of tests fails by chance once in a hundred times, and the seeds are fixed.
 constexpr double kFamilyP = 0.01;
 

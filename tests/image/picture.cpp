@@ -20,7 +20,7 @@ const Device& device() {
 Picture take_on(const Device& dev, const Scene& scene, int spp, unsigned seed, uint32_t pool, bool aovs) {
   const World world = build_world(scene, Loaders{[](const auto& file) { return read_mesh(file); },
                                                  [](const auto& file) { return read_image(file, true); }});
-  const SceneDevice on_device(dev, world, local_stage(scene.integrator));
+  const SceneDevice on_device(dev, world, local_stage(scene.integrator), joints(scene.integrator));
   IntegratorScene integrator = scene.integrator;
   integrator.seed = seed;
   RenderOptions options;
