@@ -12,7 +12,8 @@ namespace wale::cost {
 namespace {
 
 // Options that launches and programs alone know of: what lies on the device is the same at all their levels.
-constexpr std::array kNoGeometry = {"ply_lobes", "ply_shadows", "depth", "light_sampling", "math"};
+constexpr std::array kNoGeometry = {"normals",        "ply_lobes", "ply_shadows", "depth",
+                                    "light_sampling", "precision", "math"};
 
 constexpr const char* kNoFabric = "no fabric";
 

@@ -43,7 +43,7 @@ class CostExperiment : public testing::Test {
 };
 
 TEST_F(CostExperiment, RanksLevelsThatAreFarApart) {
-  const CostReport report = run("depth,light_sampling,curves", 2 * kSeconds);
+  const CostReport report = run("depth,light_sampling,curves,joints", 2 * kSeconds);
   for (const UnitResult& r : report.results) {
     EXPECT_EQ(r.left_out, "");
     EXPECT_GE(r.repetitions, kFewestRepetitions);
@@ -77,6 +77,9 @@ TEST_F(CostExperiment, RanksLevelsThatAreFarApart) {
     EXPECT_LT(*radii, tolerance + 0.02 + 0.01) << level;
     last = *radii;
   }
+  // What is chosen where leaves are packed comes to the device.
+  for (const char* level : {"open", "capsule"})
+    EXPECT_NE(find(report, "joints", level).change.relative_mse, 0) << level;
   EXPECT_GT(find(report, "curves", "0.02").start.bytes, find(report, "curves", "0.4").start.bytes);
   EXPECT_FALSE(find(report, "curves", "0.02").radii.has_value());  // the reference itself
   EXPECT_EQ(find(report, "curves", "0.02").bias.relative_mse, 0);
