@@ -92,6 +92,22 @@ void Experiment::measure_geometry(size_t u) {
 }
 
 // False when nobody wants to go on.
+// Lattices knit whole repeats: where the cloth's are none, stitches are larger or smaller, and pictures of them cannot
+// be compared. Empty: they are those of the scene.
+std::string Experiment::other_stitches(const Prepared& geometry) {
+  const auto base = scenes_.prepare(levels_.units[0]);
+  for (size_t i = 0; i < base->world.fabrics.size(); ++i) {
+    const dvec2 there = base->world.fabrics[i].report.tile_metres, here = geometry.world.fabrics[i].report.tile_metres;
+    constexpr double kSame = 1e-3;
+    if (glm::length(here / there - 1.0) > kSame)
+      return fmt::format(
+          "it knits whole tiles of {:.4g} x {:.4g} mm over fabric \"{}\" instead of {:.4g} x {:.4g}: "
+          "other stitches, another picture; give whole \"repeats\" to compare it",
+          1e3 * here.x, 1e3 * here.y, base->world.fabrics[i].name, 1e3 * there.x, 1e3 * there.y);
+  }
+  return {};
+}
+
 bool Experiment::survey_unit(size_t u) {
   const Unit& unit = levels_.units[u];
   Measured& m = measured_[u];
@@ -99,6 +115,10 @@ bool Experiment::survey_unit(size_t u) {
   const auto geometry = scenes_.prepare(unit);
   const double built = clock_() - begun;
   m.result.start = geometry->start;
+  if (const std::string why = other_stitches(*geometry); !why.empty()) {
+    leave_out(u, why);
+    return true;
+  }
   if (u == levels_.reference) {
     surface_ = ply_surface_of(device_, geometry->world);
     measure_geometry(0);  // the scene itself came before

@@ -41,6 +41,7 @@ class Experiment {
     std::vector<Repetition> repetitions;
     UnitResult result;
   };
+  std::string other_stitches(const Prepared& geometry);
   bool survey_unit(size_t u);
   std::string too_large(const Unit& unit) const;
   void measure_geometry(size_t u);

@@ -129,5 +129,15 @@ TEST_F(CostExperiment, TooLittleTimeIsSaid) {
   EXPECT_NE(message.find("the scene and its reference alone need"), std::string::npos) << message;
 }
 
+// Ten and a half courses are no whole tiles; ten are.
+TEST_F(CostExperiment, LatticesThatMoveStitchesAreLeftOut) {
+  const CostReport moved = run("warp", kSeconds);
+  for (const char* level : {"1", "2", "4"})
+    EXPECT_NE(find(moved, "warp", level).left_out.find("whole tiles of 3.333 x 2 mm"), std::string::npos)
+        << find(moved, "warp", level).left_out;
+  const CostReport same = run("warp", 2 * kSeconds, {"fabrics.cloth.mesh.height=19.0986"});
+  EXPECT_EQ(find(same, "warp", "2").left_out, "");
+}
+
 }  // namespace
 }  // namespace wale::cost
