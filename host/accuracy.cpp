@@ -54,7 +54,9 @@ const std::vector<AccuracyOption>& table() {
         {"4", {"fabrics.*.lattice=4"}},
         {"mesh", {"fabrics.*.lattice=0"}}},
        [](const Scene& s) {
-         return of_fabrics(s, [](const FabricSpec& f) { return f.lattice ? std::to_string(f.lattice) : "mesh"; });
+         return of_fabrics(s, [](const FabricSpec& f) {  // A procedural fabric has a lattice always.
+           return f.lattice ? std::to_string(f.lattice) : f.storage == Storage::procedural ? "1" : "mesh";
+         });
        }},
       {"normals", "frames that plies are shaded with: of each segment, or interpolated between joints",
        words("integrator.normals", {"flat", "linear", "rotation-minimising"}),

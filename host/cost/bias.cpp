@@ -54,6 +54,7 @@ Bias cross(std::span<const Picture> level, const Reference& reference, const std
   out.repetitions = int(n);
   if (n < 2) return out;
   double square = 0, variance = 0;
+  out.same = true;
   for (size_t p = 0; p < weights.size(); ++p) {
     const double root = std::sqrt(weights[p]);
     double d[kMostCrossed][3], mean[3] = {0, 0, 0};
@@ -61,6 +62,7 @@ Bias cross(std::span<const Picture> level, const Reference& reference, const std
       for (size_t c = 0; c < 3; ++c) {
         d[i][c] = root * (double(level[i].rgb[3 * p + c]) - reference(i).rgb[3 * p + c]);
         mean[c] += d[i][c] / double(n);
+        out.same &= d[i][c] == 0;
       }
     PixelBias pixel = pixel_bias(d, n);
     if (known) {
@@ -78,13 +80,11 @@ Bias cross(std::span<const Picture> level, const Reference& reference, const std
     variance += pixel.variance;
   }
   out.relative_mse = square;
-  if (out.known()) out.standard_error = std::sqrt(std::max(0.0, variance));
+  if (out.repetitions >= kFewestRepetitions) out.standard_error = std::sqrt(std::max(0.0, variance));
   return out;
 }
 
 }  // namespace
-
-bool Bias::known() const { return repetitions >= kFewestRepetitions; }
 
 Picture mean_of(std::span<const Picture> pictures) {
   if (pictures.empty()) bug("mean_of: no picture");

@@ -19,24 +19,27 @@ Picture mean_of(std::span<const Picture> pictures);
 /// pixel itself is left out of m, so that its weight and its noise are independent of each other.
 std::vector<double> relative_weights(const Picture& reference);
 
+constexpr int kFewestRepetitions = 4;
+constexpr size_t kMostCrossed = 64;  ///< later ones are left out
+
 /// How far the expected pictures of a level and of the reference are apart.
 struct Bias {
   double relative_mse = 0;    ///< unbiased estimate, so that it may be below 0
   double standard_error = 0;  ///< of it, by the noise of the pictures
   int repetitions = 0;        ///< that were crossed; below kFewestRepetitions there is no standard error
+  bool same = false;          ///< every value of every repetition is that of the reference
 
   static constexpr double kQuantile = 1.96;  ///< 95 % of a normal distribution: a sum over thousands of pixels
   double low() const { return relative_mse - kQuantile * standard_error; }
   double high() const { return relative_mse + kQuantile * standard_error; }
   /// Upper limit of what cannot be below 0, where it is not resolved.
   double limit() const { return (relative_mse > 0 ? relative_mse : 0) + kQuantile * standard_error; }
-  bool known() const;
-  /// The interval does not hold 0, or there is no noise at all.
-  bool resolved() const { return known() && (low() > 0 || (standard_error == 0 && relative_mse == 0)); }
+  /// There is an interval: enough repetitions, and a difference in more of them than so few that no variance shows (the
+  /// unbiased estimate of it is then 0 or less).
+  bool known() const { return repetitions >= kFewestRepetitions && (same || standard_error > 0); }
+  /// The interval does not hold 0, or the pictures are the same.
+  bool resolved() const { return known() && (low() > 0 || same); }
 };
-
-constexpr int kFewestRepetitions = 4;
-constexpr size_t kMostCrossed = 64;  ///< later ones are left out
 
 /// Crosses repetitions: with d_i the difference of repetition i of the level from repetition i of the reference, the
 /// mean of d_i d_j over i != j has the squared bias as its expectation, whatever the noise, since repetitions are

@@ -14,6 +14,7 @@
 #include "host/cost/drawing.h"
 #include "host/cost/experiment.h"
 #include "host/cost/pareto.h"
+#include "host/film.h"
 #include "host/image_coder.h"
 #include "host/loaded_library.h"
 #include "host/progress.h"
@@ -71,7 +72,11 @@ GivenReference read_reference(const CostArgs& args) {
       out.picture.rgb[3 * p + c] = value_of(image, p, name, file);
       out.variance[3 * p + c] = value_of(image, p, "variance." + name, file);
     }
-    out.samples = std::max(out.samples, double(value_of(image, p, "samples", file)));
+    const double samples = value_of(image, p, "samples", file);
+    if (samples < double(kScrambles))
+      user_error("--reference {}: has {:g} samples in a pixel, whose noise nothing tells; at least {} are needed",
+                 out.file, samples, kScrambles);
+    out.samples += samples / double(pixels);
   }
   if (const auto found = image.attributes.find(kAccuracyAttribute); found != image.attributes.end())
     out.accuracy = found->second;

@@ -91,7 +91,6 @@ void Experiment::measure_geometry(size_t u) {
   measured_[u].result.radii = largest;
 }
 
-// False when nobody wants to go on.
 // Lattices knit whole repeats: where the cloth's are none, stitches are larger or smaller, and pictures of them cannot
 // be compared. Empty: they are those of the scene.
 std::string Experiment::other_stitches(const Prepared& geometry) {
@@ -108,6 +107,7 @@ std::string Experiment::other_stitches(const Prepared& geometry) {
   return {};
 }
 
+// False when nobody wants to go on.
 bool Experiment::survey_unit(size_t u) {
   const Unit& unit = levels_.units[u];
   Measured& m = measured_[u];
@@ -116,7 +116,7 @@ bool Experiment::survey_unit(size_t u) {
   const double built = clock_() - begun;
   m.result.start = geometry->start;
   if (const std::string why = other_stitches(*geometry); !why.empty()) {
-    leave_out(u, why);
+    cannot_render(u, why);
     return true;
   }
   if (u == levels_.reference) {

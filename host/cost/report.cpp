@@ -115,8 +115,9 @@ std::string figure(double value) {
 }
 
 std::string bias_words(const Bias& bias) {
-  if (!bias.known()) return fmt::format("too few repetitions ({})", bias.repetitions);
-  if (bias.standard_error == 0 && bias.relative_mse == 0) return "none: the same pictures";
+  if (bias.repetitions < kFewestRepetitions) return fmt::format("too few repetitions ({})", bias.repetitions);
+  if (bias.same) return "none: the same pictures";
+  if (!bias.known()) return "in too few pixels and repetitions to tell";
   if (!bias.resolved()) return "not resolved, < " + percent(root(bias.limit()));
   return fmt::format("{} [{}, {}]", percent(root(bias.relative_mse)), figure(100 * root(bias.low())),
                      figure(100 * root(bias.high())));

@@ -160,5 +160,20 @@ TEST(CostBias, WeightsAreOfTheNeighbours) {
   EXPECT_NEAR(weights[7], 1 / (std::pow(107 / 8.0, 2) + least) / 75, 1e-12);  // beside it
 }
 
+// A difference that one repetition alone shows says nothing of its size, and is not none.
+TEST(CostBias, ADifferenceInOneRepetitionIsNeitherNoneNorResolved) {
+  const Picture flat{4, 4, std::vector<float>(48, 0.5f)};
+  const std::vector<Picture> reference(8, flat);
+  std::vector<Picture> level = reference;
+  const std::vector<double> weights = relative_weights(flat);
+  EXPECT_TRUE(relative_bias(level, reference, weights).same);
+  EXPECT_TRUE(relative_bias(level, reference, weights).resolved());
+  level[3].rgb[15] = 40;
+  const Bias rare = relative_bias(level, reference, weights);
+  EXPECT_FALSE(rare.same);
+  EXPECT_FALSE(rare.known());
+  EXPECT_FALSE(rare.resolved());
+}
+
 }  // namespace
 }  // namespace wale::cost
