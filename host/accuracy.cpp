@@ -86,6 +86,15 @@ const std::vector<AccuracyOption>& table() {
   return options;
 }
 
+using Levels = std::vector<std::pair<std::string, std::string>>;
+
+Levels with(Levels levels, const Levels& changes) {
+  for (const auto& [option, level] : changes)
+    for (auto& [name, value] : levels)
+      if (name == option) value = level;
+  return levels;
+}
+
 }  // namespace
 
 const AccuracyLevel* AccuracyOption::level(const std::string& wanted) const {
@@ -113,68 +122,35 @@ const AccuracyOption& accuracy_option(const std::string& name) {
 }
 
 std::span<const AccuracyPreset> accuracy_presets() {
+  // The others as changes to it.
+  const Levels final = {{"local_stage", "exact"},
+                        {"curves", "0.05"},
+                        {"joints", "mitre"},
+                        {"warp", "mesh"},
+                        {"normals", "rotation-minimising"},
+                        {"detail", "maps"},
+                        {"ply_lobes", "full"},
+                        {"ply_shadows", "attenuated"},
+                        {"depth", "0"},
+                        {"light_choice", "power"},
+                        {"light_sampling", "mis"},
+                        {"precision", "float"},
+                        {"math", "exact"}};
   // A reference keeps maps: explicit fibres are another model of the ply, a hundred times as large.
   static const std::vector<AccuracyPreset> presets = {
-      {"draft",
-       "to place camera and lights",
-       {{"local_stage", "exact"},
-        {"curves", "0.2"},
-        {"joints", "mitre"},
-        {"warp", "mesh"},
-        {"normals", "rotation-minimising"},
-        {"detail", "none"},
-        {"ply_lobes", "paper"},
-        {"ply_shadows", "opaque"},
-        {"depth", "4"},
-        {"light_choice", "power"},
-        {"light_sampling", "mis"},
-        {"precision", "float"},
-        {"math", "exact"}}},
-      {"paper",
-       "as KNIT21 describes it",
-       {{"local_stage", "cell"},
-        {"curves", "0.1"},
-        {"joints", "mitre"},
-        {"warp", "mesh"},
-        {"normals", "rotation-minimising"},
-        {"detail", "paper"},
-        {"ply_lobes", "paper"},
-        {"ply_shadows", "opaque"},
-        {"depth", "16"},
-        {"light_choice", "power"},
-        {"light_sampling", "mis"},
-        {"precision", "float"},
-        {"math", "exact"}}},
-      {"final",
-       "what scenes have where they say nothing",
-       {{"local_stage", "exact"},
-        {"curves", "0.05"},
-        {"joints", "mitre"},
-        {"warp", "mesh"},
-        {"normals", "rotation-minimising"},
-        {"detail", "maps"},
-        {"ply_lobes", "full"},
-        {"ply_shadows", "attenuated"},
-        {"depth", "0"},
-        {"light_choice", "power"},
-        {"light_sampling", "mis"},
-        {"precision", "float"},
-        {"math", "exact"}}},
-      {"reference",
-       "to measure others against",
-       {{"local_stage", "exact"},
-        {"curves", "0.02"},
-        {"joints", "mitre"},
-        {"warp", "mesh"},
-        {"normals", "rotation-minimising"},
-        {"detail", "maps"},
-        {"ply_lobes", "full"},
-        {"ply_shadows", "attenuated"},
-        {"depth", "0"},
-        {"light_choice", "power"},
-        {"light_sampling", "mis"},
-        {"precision", "float"},
-        {"math", "exact"}}},
+      {"draft", "to place camera and lights",
+       with(
+           final,
+           {{"curves", "0.2"}, {"detail", "none"}, {"ply_lobes", "paper"}, {"ply_shadows", "opaque"}, {"depth", "4"}})},
+      {"paper", "as KNIT21 describes it",
+       with(final, {{"local_stage", "cell"},
+                    {"curves", "0.1"},
+                    {"detail", "paper"},
+                    {"ply_lobes", "paper"},
+                    {"ply_shadows", "opaque"},
+                    {"depth", "16"}})},
+      {"final", "what scenes have where they say nothing", final},
+      {"reference", "to measure others against", with(final, {{"curves", "0.02"}})},
   };
   return presets;
 }
