@@ -38,6 +38,7 @@ W_INLINE Bounds pack_leaf(uint4 run, __global const float* positions, uint joint
   const w_vf r = w_all(as_float(leaf[W_LEAF_RADIUS]));
   const int quantised = (layout & W_LAYOUT_QUANTISED) != 0u;
   const float step = quantised ? step_of(leaf, steps) : 0.0f;
+  int broken = 0; /* has a point that no integer stands for: told to the host by a box that is no box */
   Points point;
   clear_points(&point);
   for (uint p = 0; p < n; ++p) {
@@ -48,7 +49,10 @@ W_INLINE Bounds pack_leaf(uint4 run, __global const float* positions, uint joint
     const int inside = first >= 2 && first + intervals + 2 < ply.count;
     for (int j = 0; j < intervals + 5; ++j) {
       float3 x = inside ? stored(&ply, first - 2 + j) : vertex(&ply, first - 2 + j);
-      if (quantised) x = on_steps(x, step);
+      if (quantised) {
+        broken |= no_number(x);
+        x = on_steps(x, step);
+      }
       const uint at = (uint)j * n + p;
       point.x[at] = x.x;
       point.y[at] = x.y;
@@ -73,8 +77,9 @@ W_INLINE Bounds pack_leaf(uint4 run, __global const float* positions, uint joint
 
   uint cut_joints;
   const int open_start = !run.w && first == 0, open_end = !run.w && first + intervals == (int)run.z - 1;
-  const Bounds box =
+  Bounds box =
       bound_joints(&point, n, lanes, r, (open_start ? 1u : 0u) | (open_end ? 2u : 0u), joints, &cut_joints);
+  if (broken) box.lo = (float3)(NAN);
   const uint segments = (1u << lanes) - 1u;
   if (joints == W_JOINTS_CAPSULE) leaf[W_LEAF_LAYOUT] = layout | W_LAYOUT_CAPSULES;
   leaf[W_LEAF_CUTS] = (cut_joints & segments) | (cut_joints >> n & segments) << 16;

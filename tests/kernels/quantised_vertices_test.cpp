@@ -19,7 +19,7 @@ namespace wale::test {
 namespace {
 
 constexpr double kQuantisedVertex = 5e-4;  // ply radii a coordinate: half a step, of 65532 across the largest leaf
-constexpr double kQuantisedBytes = 0.66;   // of the bytes of leaves of floats
+constexpr double kQuantisedBytes = 0.75;   // of the bytes of leaves of floats; two thirds from two plies on
 const LeafForm kQuantised(Joints::mitre, Vertices::quantised);
 
 /// Points of vertices as the leaves hold them; `disagree` counts points that leaves hold differently.
@@ -133,7 +133,8 @@ TEST(QuantisedVertices, HitsAreThoseOfTheDecodedPointsToTheLastBit) {
       EXPECT_GT(hits, rays.size() / 4) << name;
       const std::vector<Hit> packets = quantised.trace_packets(rays);
       for (size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(packets[i].t, expected[i].t) << name << i;
-      const std::vector<Surface> a = quantised.surfaces(rays, expected), b = full.surfaces(rays, expected);
+      const std::vector<Hit> own = quantised.trace(rays, "-DW_LANES=16");  // leaves have other numbers
+      const std::vector<Surface> a = quantised.surfaces(rays, own), b = full.surfaces(rays, expected);
       for (size_t i = 0; i < rays.size(); ++i)
         ASSERT_TRUE(expected[i].kind != W_HIT_PLY || std::memcmp(&a[i], &b[i], sizeof a[i]) == 0) << name << i;
     }
@@ -235,22 +236,20 @@ TEST(QuantisedVertices, SplitBuffersHoldTheSameLeaves) {
   for (size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(same_bits(a[i], b[i])) << i;
 }
 
-TEST(QuantisedVertices, CellStagesMeetThePointsOfTheExactOne) {
+TEST(QuantisedVertices, CellStagesMeetWhatTheyMeetOfFloats) {
   const Fabric fabric = knit(make_swatch(0.02, 0.02, 4, 4), 3);
-  const FabricTracer exact(test_device(), fabric, -1, LocalStage::exact, false, kQuantised);
   const FabricTracer ring(test_device(), fabric, -1, LocalStage::ring, false, kQuantised);
   const FabricTracer full_ring(test_device(), fabric, -1, LocalStage::ring);
-  const std::vector<Ray> rays = primary_rays(exact.bounds(), 10000, 3);
-  const std::vector<Hit> a = exact.trace(rays), b = ring.trace(rays), c = full_ring.trace(rays);
-  size_t same = 0, hits = 0, as_full = 0;
+  const std::vector<Ray> rays = primary_rays(ring.bounds(), 10000, 3);
+  const std::vector<Hit> b = ring.trace(rays), c = full_ring.trace(rays);
+  size_t same = 0, hits = 0;
   for (size_t i = 0; i < rays.size(); ++i) {
     hits += b[i].kind == W_HIT_PLY;
-    same += b[i].kind == W_HIT_PLY && a[i].kind == b[i].kind && a[i].t == b[i].t;
-    as_full += (b[i].kind == W_HIT_PLY) == (c[i].kind == W_HIT_PLY);
+    same += b[i].kind == c[i].kind &&
+            (b[i].kind != W_HIT_PLY || std::abs(b[i].t - c[i].t) < 0.01 * double(fabric.ply_radius));
   }
   EXPECT_GT(hits, rays.size() / 10);
-  EXPECT_GT(double(same), 0.9 * double(hits));  // the ring misses what lies in cells further off
-  EXPECT_GT(double(as_full), 0.995 * double(rays.size()));
+  EXPECT_GT(double(same), 0.99 * double(rays.size()));
 }
 
 TEST(QuantisedVertices, PointsThatAreNoNumbersAreRefused) {
