@@ -117,7 +117,7 @@ std::span<const AccuracyPreset> accuracy_presets() {
   static const std::vector<AccuracyPreset> presets = {
       {"draft",
        "to place camera and lights",
-       {{"local_stage", "cell"},
+       {{"local_stage", "exact"},
         {"curves", "0.2"},
         {"joints", "mitre"},
         {"warp", "mesh"},

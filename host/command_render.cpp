@@ -14,21 +14,12 @@
 #include "host/rehearsal.h"
 #include "host/render.h"
 #include "host/sampling_report.h"
+#include "host/scene_identity.h"
 #include "host/stats.h"
 #include "host/stop.h"
 
 namespace wale {
 namespace {
-
-// "WxH" into the film's size.
-void apply_size(const std::string& size, FilmScene& film) {
-  int w = 0, h = 0, end = 0;
-  if (std::sscanf(size.c_str(), "%dx%d%n", &w, &h, &end) != 2 || size_t(end) != size.size() || w < 1 || h < 1 ||
-      w > 65536 || h > 65536)
-    user_error("--size {}: expected WIDTHxHEIGHT, each 1 to 65536, for example 768x768", size);
-  film.width = w;
-  film.height = h;
-}
 
 // Samples per pixel at most: a goal decides itself where to stop.
 int most_samples(const RenderArgs& args, const IntegratorScene& integrator) {
@@ -210,7 +201,9 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   start.step("first wave", r.first_sample_seconds);
 
   const SamplingReport sampling{options.spp, options.error, options.seconds, r.stopped, r.reached};
-  r.image.attributes = sampling_attributes(sampling);
+  r.image.figures = sampling_attributes(sampling);
+  r.image.attributes = {{kSceneAttribute, scene_identity(args.scene, args.set)},
+                        {kAccuracyAttribute, accuracy_settings(scene)}};
   for (const auto& output : args.outputs) write_image(r.image, output, scene.film.exposure, scene.film.view);
   const Features features =
       features_of(devices.list().front().device->traits(), world, scene.integrator, options);

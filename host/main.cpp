@@ -9,6 +9,7 @@
 #include "geom/error.h"
 #include "host/accuracy.h"
 #include "host/commands.h"
+#include "host/cost/command.h"
 #include "host/device.h"
 #include "host/device_fault.h"
 #include "host/suggest.h"
@@ -109,6 +110,19 @@ int run(int argc, char** argv) {
   add_features_option(*c, scene.also);
   c->add_option("--json", json, "write the plan as JSON (- for the terminal)");
   c->callback([&] { status = wale::run_plan(scene, json, loaders); });
+  wale::CostArgs cost;
+  for (int i = 0; i < argc; ++i) cost.command += (i ? " " : "") + std::string(argv[i]);
+  c = app.add_subcommand("cost",
+                         "measure what every accuracy option costs on this scene and device, and what it changes");
+  add_scene_options(*c, cost);
+  add_device_options(*c, cost, "its number");
+  c->add_option("-o,--output", cost.output, "folder for cost.csv, cost.json, pareto.svg, pareto.png, index.html")
+      ->required();
+  c->add_option("--minutes", cost.minutes, "time for everything, 10 unless given")->check(finite_number(false));
+  c->add_option("--size", cost.size, "WIDTHxHEIGHT; default: the film's, made smaller");
+  c->add_option("--reference", cost.reference, "compare with this .exr of `wale render` instead of rendering one");
+  c->add_option("--options", cost.options, "only these, with commas between them; presets stands for the presets");
+  c->callback([&] { status = wale::run_cost(cost, loaders); });
   c = app.add_subcommand("export", "write the ply curves: .obj, .pbrt, .txt (Mitsuba), .usda");
   add_scene_options(*c, scene);
   add_device_options(*c, scene, "its number");

@@ -21,7 +21,7 @@ class CliGoal : public Cli {
     nlohmann::json stats;
     Image picture;
     float attribute(const std::string& name) const {
-      for (const auto& [key, value] : picture.attributes)
+      for (const auto& [key, value] : picture.figures)
         if (key == name) return value;
       ADD_FAILURE() << "no attribute " << name;
       return -1;
