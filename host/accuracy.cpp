@@ -78,6 +78,8 @@ const std::vector<AccuracyOption>& table() {
       {"light_sampling", "directions of direct light: from scattering, from lights, or both weighed (MIS)",
        words("integrator.light_sampling", {"bsdf", "light", "mis"}),
        [](const Scene& s) { return s.integrator.light_sampling; }},
+      {"vertices", "how stored curves keep their points: 16 bits a coordinate on a common lattice, or floats",
+       words("integrator.vertices", {"quantised", "full"}), [](const Scene& s) { return s.integrator.vertices; }},
       {"precision", "arithmetic of rays and shading; what is stored stays float",
        words("integrator.precision", {"float", "double"}), [](const Scene& s) { return s.integrator.precision; }},
       {"math", "what the kernels' compiler may do to arithmetic", words("integrator.math", {"relaxed", "exact"}),
@@ -134,6 +136,7 @@ std::span<const AccuracyPreset> accuracy_presets() {
                         {"depth", "0"},
                         {"light_choice", "power"},
                         {"light_sampling", "mis"},
+                        {"vertices", "full"},
                         {"precision", "float"},
                         {"math", "exact"}};
   // A reference keeps maps: explicit fibres are another model of the ply, a hundred times as large.

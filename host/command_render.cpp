@@ -51,7 +51,7 @@ class Devices {
     std::vector<std::future<std::unique_ptr<SceneDevice>>> scenes;
     for (const Device& device : open_)
       scenes.push_back(std::async(open_.size() > 1 ? std::launch::async : std::launch::deferred,
-                                  [&] { return std::make_unique<SceneDevice>(device, world, stage, joints(integrator)); }));
+                                  [&] { return std::make_unique<SceneDevice>(device, world, stage, leaf_form(integrator)); }));
     for (auto& scene : scenes) scenes_.push_back(scene.get());
     for (size_t d = 0; d < open_.size(); ++d) list_.push_back({&open_[d], scenes_[d].get()});
   }

@@ -14,7 +14,7 @@ std::vector<FabricInput> fabric_inputs(const World& world);
 class SceneDevice {
  public:
   SceneDevice(const Device& device, const World& world, LocalStage stage = LocalStage::exact,
-              Joints joints = Joints::mitre);
+              LeafForm form = {});
 
   /// Definitions for the kernels that follow from how the world lies on the device, beside those of its features.
   std::string options() const { return fabric_.tree.leaves.split() ? " -DW_SPLIT_LEAVES" : ""; }
