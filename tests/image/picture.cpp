@@ -164,6 +164,21 @@ double smallest_p(const Image& a, const Image& b, size_t& tests) {
   return p;
 }
 
+double smallest_p_of_means(const Image& a, const Image& b) {
+  double p = 1;
+  for (int c = 0; c < 3; ++c) {
+    double difference = 0, variance = 0;
+    for (int y = 0; y < a.height; ++y)
+      for (int x = 0; x < a.width; ++x) {
+        const float *v = a.at(x, y), *w = b.at(x, y);
+        difference += double(v[c]) - w[c];
+        variance += double(v[3 + c]) + w[3 + c];
+      }
+    p = std::min(p, p_of(difference, variance, 7.0 * a.width * a.height));
+  }
+  return p;
+}
+
 double sidak(double alpha, size_t tests) { return -std::expm1(std::log1p(-alpha) / double(tests)); }
 
 std::array<double, 3> mean_rgb(const Image& image) {
