@@ -68,7 +68,11 @@ std::vector<std::string> overrides_of(const SceneArgs& args) {
   return overrides;
 }
 
-Scene read_scene(const SceneArgs& args) { return read_scene(args.scene, overrides_of(args)); }
+Scene read_scene(const SceneArgs& args) {
+  Scene scene = read_scene(args.scene, overrides_of(args));
+  scene.accuracy_preset = args.preset;
+  return scene;
+}
 
 int run_build(const SceneArgs& args, const std::filesystem::path& json, const Loaders& loaders) {
   require_json_path(json);

@@ -6,9 +6,9 @@
 
 #include "geom/wide_tree.h"
 #include "host/device.h"
+#include "host/leaf_buffers.h"
 #include "host/leaf_form.h"
 #include "host/leaf_steps.h"
-#include "host/leaf_buffers.h"
 #include "host/ply_refit.h"
 #include "host/quantised_tree.h"
 

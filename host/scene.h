@@ -183,6 +183,7 @@ struct Scene {
   std::vector<FabricScene> fabrics;
   std::vector<ObjectScene> objects;
   std::vector<LightScene> lights;
+  std::string accuracy_preset;  ///< of --preset, for messages
 };
 
 /// Reads a scene file strictly. Throws a user error "file:line:column: ..." with the nearest valid choice on unknown
