@@ -18,13 +18,39 @@ namespace {
 
 constexpr double kRow = 0.62, kHalf = 0.13, kDepth = 0.16;  // stitch widths
 
+// Heights of the rows of a tile and of as many as its loops reach into the next ones: where loops cross on their way up
+// there is more of it, or their legs would lie side by side as one.
+class RowHeights {
+ public:
+  explicit RowHeights(const Knit& knit) : rows_(knit.rows), way_(size_t(knit.rows), kRow) {
+    for (const Loop& loop : knit.loops)
+      if (loop.crossing != 0) {
+        double& way = way_[size_t((loop.top_row - 1) % rows_)];
+        way = std::max(way, kRow * (1 + 0.5 * std::abs(loop.top_wale - loop.wale)));
+      }
+    for (const double way : way_) tile_ += way;
+  }
+  double at(int row) const {
+    double sum = (row / rows_) * tile_;
+    for (int r = 0; r < row % rows_; ++r) sum += way_[size_t(r)];
+    return sum;
+  }
+  double tile() const { return tile_; }
+
+ private:
+  int rows_;
+  std::vector<double> way_;
+  double tile_ = 0;
+};
+
 class CourseCurve {
  public:
-  CourseCurve(const Knit& knit, const Course& course, int row) : knit_(knit), row_(row) {
+  CourseCurve(const Knit& knit, const RowHeights& heights, int row) : heights_(heights) {
+    const Course& course = knit.courses[size_t(row)];
     for (size_t wale = 0; wale < course.places.size(); ++wale) {
       const auto& place = course.places[wale];
       if (place.loop < 0)
-        add(double(wale) + 0.5, height(row_), (place.float_front ? 2.2 : -2.2) * kDepth);
+        add(double(wale) + 0.5, heights_.at(row), (place.float_front ? 2.2 : -2.2) * kDepth);
       else
         loop(knit.loops[size_t(place.loop)]);
     }
@@ -32,14 +58,13 @@ class CourseCurve {
   std::vector<dvec3> points;
 
  private:
-  static double height(int row) { return row * kRow; }
   void add(double x, double y, double z) { points.emplace_back(x, y, z); }
 
   void loop(const Loop& l) {
     for (const double side : {-1.0, 1.0}) {
       std::vector<dvec3> half;
-      const double x = l.wale + 0.5, y = height(l.row), front = l.knit ? 1 : -1;
-      const double top_x = l.top_wale + 0.5, top = height(l.top_row), top_front = l.top_knit ? 1 : -1;
+      const double x = l.wale + 0.5, y = heights_.at(l.row), front = l.knit ? 1 : -1;
+      const double top_x = l.top_wale + 0.5, top = heights_.at(l.top_row), top_front = l.top_knit ? 1 : -1;
       if (l.foot == Loop::Foot::pulled) {
         half.emplace_back(x + side * 0.33, y - kHalf, -front * kDepth);
         half.emplace_back(x + side * 0.2, y - 0.2 * kHalf, 0);
@@ -65,8 +90,7 @@ class CourseCurve {
     }
   }
 
-  const Knit& knit_;
-  int row_;
+  const RowHeights& heights_;
 };
 
 // Point of a centripetal Catmull-Rom spline (Barry and Goldman 1988) from b to c, u in [0,1].
@@ -97,6 +121,11 @@ std::vector<dvec3> fine(const std::vector<dvec3>& control, double wales) {
   return out;
 }
 
+// Shares of a plain stitch's yarn: a float is about as long as a wale is wide; a loop that crosses wales takes up more.
+constexpr double kFloat = 0.3, kCrossing = 0.25;
+
+int crossed(const Loop& loop) { return loop.crossing == 0 ? 0 : loop.top_wale - loop.wale; }
+
 double length_of(const std::vector<dvec3>& line) {
   double sum = 0;
   for (size_t i = 1; i < line.size(); ++i) sum += glm::length(line[i] - line[i - 1]);
@@ -107,30 +136,23 @@ double length_of(const std::vector<dvec3>& line) {
 
 PeriodicYarns loop_curves(const Knit& knit, const LoopSizes& sizes) {
   const double diameter = 2 * sizes.yarn_radius;
+  const RowHeights heights(knit);
   std::vector<std::vector<dvec3>> lines;
-  std::vector<double> rest;  // in stitch widths of a plain stitch's scale, below
-  double drawn = 0, wanted = 0;
-  for (int row = 0; row < knit.rows; ++row) {
-    lines.push_back(fine(CourseCurve(knit, knit.courses[size_t(row)], row).points, knit.wales));
-    int loops = 0;
-    for (const auto& place : knit.courses[size_t(row)].places) loops += place.loop >= 0;
-    drawn += length_of(lines.back());
-    wanted += loops;
-  }
-  // Floats are about as long as a wale is wide, which is a third of a loop or less.
-  constexpr double kFloat = 0.3;
+  double drawn = 0, total = 0;
   std::vector<double> lengths;
-  double total = 0;
-  for (const Course& course : knit.courses) {
-    double length = 0;
-    for (const auto& place : course.places) length += place.loop >= 0 ? 1 : kFloat;
-    lengths.push_back(length * sizes.loop_length * diameter);
+  for (int row = 0; row < knit.rows; ++row) {
+    lines.push_back(fine(CourseCurve(knit, heights, row).points, knit.wales));
+    drawn += length_of(lines.back());
+    double loops = 0;
+    for (const auto& place : knit.courses[size_t(row)].places)
+      loops += place.loop < 0 ? kFloat : 1 + kCrossing * std::abs(crossed(knit.loops[size_t(place.loop)]));
+    lengths.push_back(loops * sizes.loop_length * diameter);
     total += lengths.back();
   }
   const double scale = total / drawn;  // metres per stitch width
   PeriodicYarns out;
   out.radius = sizes.yarn_radius;
-  out.period = scale * dvec2(knit.wales, knit.rows * kRow);
+  out.period = scale * dvec2(knit.wales, heights.tile());
   for (size_t row = 0; row < lines.size(); ++row) {
     PeriodicYarn yarn;
     yarn.first = uint32_t(out.points.size());

@@ -10,9 +10,11 @@
 // Each term is a function of sums v = sum w_i x_i + S p of points and period p, where weights of the closest points of
 // two segments are held: then gradients are exact (they are closest), and Hessians keep their positive part only.
 //
-// No yarn passes through another: two segments at distance d whose ends move by at most m1 and m2 keep a distance of
-// d - m1 - m2 or more on the whole way, so a step is cut to 0.9 d / (m1 + m2) for every pair within reach, and those
-// beyond reach to 0.9 of it. Energies are infinite below c, so no pair ever rests closer than that.
+// No yarn passes through another. On a step every point goes straight. Two segments at distance d of which no two ends
+// move by more than m against each other keep d - m or more on the way, so a step is cut to 0.9 d / m for every pair
+// within reach R. For pairs beyond it the step of a point is split into the stretch A of the whole tile and the rest,
+// at most r: they keep (1 - |A|) R - 2 r, of which half of R is left. Energies are infinite below c, so no pair rests
+// closer than that.
 #include "geom/relax/relaxation.h"
 
 #include <Eigen/Sparse>
@@ -44,7 +46,7 @@ class Energy {
   Energy(const RelaxSettings& settings, const std::vector<YarnSegment>& segments, size_t points)
       : settings_(settings), segments_(segments), unknowns_(3 * points + 2) {}
 
-  void thickness(double share) { contact_from_ = share, closest_ = share * settings_.closest; }
+  void contact(double from, double closest) { contact_from_ = from, closest_ = closest; }
   double closest() const { return closest_; }
   void pairs(std::vector<SegmentPair> pairs) { pairs_ = std::move(pairs); }
   const std::vector<SegmentPair>& pairs() const { return pairs_; }
@@ -185,6 +187,8 @@ class Energy {
   std::vector<Eigen::Triplet<double>> entries_;
 };
 
+constexpr double kSoft = 0.6;
+
 PeriodicYarns moved(const PeriodicYarns& y, const Vector& step, double share) {
   PeriodicYarns out = y;
   for (size_t i = 0; i < y.points.size(); ++i)
@@ -205,7 +209,7 @@ class Relaxation {
   void settle(double tolerance, int most, bool free_period, Relaxed& out) {
     free_ = free_period;
     for (int step = 0; step < most; ++step) {
-      if (step % 4 == 0 || !pairs_hold_) find_pairs();
+      find_pairs();
       energy_.differentiate(yarns_, gradient_, hessian_);
       clamp_period();
       measure(out);
@@ -215,11 +219,7 @@ class Relaxation {
     }
   }
 
-  void find_pairs() {
-    energy_.pairs(near_pairs(yarns_, segments_, kReach, settings_.neighbours));
-    pairs_hold_ = true;
-    travelled_ = 0;
-  }
+  void find_pairs() { energy_.pairs(near_pairs(yarns_, segments_, kReach, settings_.neighbours)); }
   double closest() const {
     double least = kReach;
     for (const SegmentPair& pair : energy_.pairs())
@@ -238,10 +238,10 @@ class Relaxation {
   Energy& energy() { return energy_; }
 
  private:
-  static constexpr double kReach = 1.6;  // D; pairs beyond are not looked at until the next search
+  static constexpr double kReach = 1.6;  // D; pairs beyond need no look at a time
 
   void clamp_period() {
-    const long px = gradient_.size() - 2, py = px + 1;
+    const long px = gradient_.size() - 2;
     const bool hold[] = {!(free_ && settings_.free_period_x), !(free_ && settings_.free_period_y)};
     for (int k = 0; k < 2; ++k)
       if (hold[k]) {
@@ -252,7 +252,6 @@ class Relaxation {
             if (it.row() == px + k) it.valueRef() = 0;
         hessian_.coeffRef(px + k, px + k) = 1;
       }
-    (void)py;
   }
 
   void measure(Relaxed& out) const {
@@ -268,8 +267,7 @@ class Relaxation {
     for (int attempt = 0; attempt < 12; ++attempt, damping_ *= 8) {
       Matrix damped = hessian_;
       for (long i = 0; i < damped.rows(); ++i) damped.coeffRef(i, i) += damping_;
-      if (!analysed_) solver_.analyzePattern(damped);
-      solver_.factorize(damped);
+      solver_.compute(damped);
       if (solver_.info() != Eigen::Success) continue;
       const Vector step = solver_.solve(-gradient_);
       const double slope = gradient_.dot(step);
@@ -281,8 +279,6 @@ class Relaxation {
         if (!(after <= before + 1e-4 * share * slope)) continue;
         yarns_.points = next.points;
         yarns_.period = next.period;
-        travelled_ += 2 * share * largest_;
-        if (travelled_ > kReach - 1.05) pairs_hold_ = false;
         if (halving == 0) damping_ = std::max(1e-6, damping_ * 0.3);
         return true;
       }
@@ -292,24 +288,23 @@ class Relaxation {
   }
 
   // Share of the step on which no pair can meet.
-  double allowed(const Vector& step) {
-    const size_t points = yarns_.points.size();
-    std::vector<double> way(points);
-    largest_ = 0;
-    for (size_t i = 0; i < points; ++i) {
-      way[i] = std::sqrt(step[long(3 * i)] * step[long(3 * i)] + step[long(3 * i) + 1] * step[long(3 * i) + 1] +
-                         step[long(3 * i) + 2] * step[long(3 * i) + 2]);
-      largest_ = std::max(largest_, way[i]);
-    }
-    const double period = std::hypot(step[step.size() - 2], step[step.size() - 1]);
-    largest_ += 2 * period;
-    const double left = kReach - travelled_;
-    double share = std::min(1.0, std::min(0.45 * left, 0.25) / std::max(largest_, 1e-300));
+  double allowed(const Vector& step) const {
+    const auto way = [&](uint32_t i) { return dvec3(step[long(3 * i)], step[long(3 * i) + 1], step[long(3 * i) + 2]); };
+    const dvec2 period(step[step.size() - 2], step[step.size() - 1]);
+    const dvec3 stretch(period / yarns_.period, 0);
+    double own = 0;
+    for (size_t i = 0; i < yarns_.points.size(); ++i)
+      own = std::max(own, glm::length(way(uint32_t(i)) - stretch * yarns_.points[i]));
+    const double affine = std::max(std::abs(stretch.x), std::abs(stretch.y));
+    double share = std::min(1.0, 0.5 * kReach / std::max(2 * own + affine * kReach, 1e-300));
+    share = std::min(share, 0.3 / std::max(affine, 1e-300));
     for (const SegmentPair& pair : energy_.pairs()) {
       const YarnSegment &f = segments_[pair.first], &g = segments_[pair.second];
-      const double images = std::abs(pair.image.x) + std::abs(pair.image.y) + std::abs(f.shift.x) +
-                            std::abs(f.shift.y) + std::abs(g.shift.x) + std::abs(g.shift.y);
-      const double motion = std::max(way[f.a], way[f.b]) + std::max(way[g.a], way[g.b]) + images * period;
+      const auto image = [&](ivec2 by) { return dvec3(dvec2(by) * period, 0); };
+      double motion = 0;
+      for (const dvec3& a : {way(f.a), way(f.b) + image(f.shift)})
+        for (const dvec3& b : {way(g.a) + image(pair.image), way(g.b) + image(pair.image + g.shift)})
+          motion = std::max(motion, glm::length(a - b));
       if (motion > 0) share = std::min(share, 0.9 * glm::length(energy_.pair_distance(yarns_, pair).way) / motion);
     }
     return share;
@@ -322,8 +317,8 @@ class Relaxation {
   Vector gradient_;
   Matrix hessian_;
   Eigen::SimplicialLDLT<Matrix> solver_;
-  bool analysed_ = false, pairs_hold_ = false, free_ = false;
-  double damping_ = 1e-3, travelled_ = 0, largest_ = 0;
+  bool free_ = false;
+  double damping_ = 1e-3;
 };
 
 }  // namespace
@@ -346,23 +341,23 @@ Relaxed relax(PeriodicYarns& yarns, const RelaxSettings& settings,
     return out;
   };
   work.find_pairs();
-  // The yarn swells as far as it has room, is left to settle a little, and swells on.
-  double share = 0;
-  while (share < 1 && out.steps < settings.max_steps) {
-    const double room = work.closest() / settings.closest;
-    const double next = std::min({1.0, 0.995 * room, std::max(share * 1.08, 0.995 * room * 0.9)});
-    if (next < share * 1.0005 && share > 0) {
-      work.settle(settings.force_tolerance, 20, true, out);  // no room: the period gives way
-    } else {
-      share = next;
-    }
-    work.energy().thickness(share);
-    work.settle(0.3, share < 1 ? 6 : 40, share > 0.7, out);
+  // The yarn swells under a wide barrier, from kSoft of its diameter on; with its whole diameter the barrier narrows.
+  double share = 0, hardness = kSoft;
+  while (out.steps < settings.max_steps && (share < 1 || hardness < settings.closest)) {
+    const double room = work.closest();
+    if (share < 1)
+      share = std::clamp(0.9 * room / kSoft, share * 1.0, std::min(1.0, share == 0 ? 1.0 : share * 1.25));
+    else
+      hardness = std::clamp(0.5 * (hardness + room), hardness, settings.closest);
+    if (share == 1 && hardness > 0.995 * settings.closest && room > settings.closest) hardness = settings.closest;
+    work.energy().contact(share, share * hardness);
+    work.settle(0.1, 8, share > 0.6 || work.strain() > 0.02, out);
     out.thickness_share = share;
     if (progress && !progress(share, out.force)) return finish();
   }
   work.settle(settings.force_tolerance, std::max(0, settings.max_steps - out.steps), true, out);
-  out.converged = share >= 1 && out.force < settings.force_tolerance && out.period_force < settings.force_tolerance;
+  out.converged = share >= 1 && hardness >= settings.closest && out.force < settings.force_tolerance &&
+                  out.period_force < settings.force_tolerance;
   return finish();
 }
 
