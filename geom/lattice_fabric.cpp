@@ -37,6 +37,7 @@ Fabric knit_lattice(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spe
   fabric.yarn_radius = map.yarn_radius;
   const int cells = std::max(1, spec.lattice);
   Fabric::Report& report = fabric.report;
+  double area = 0;
   for (size_t c = 0; c < fabric.charts.size(); ++c) {
     const Chart& chart = fabric.charts[c];
     const ChartMap& chart_map = map.charts[c];
@@ -71,13 +72,16 @@ Fabric knit_lattice(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spe
       report.plies += lines * size_t(spec.plies);
       report.segments += lines * along * yarn.samples * size_t(spec.plies);
     }
+    const double share = tile.x * tile.y * tiles.x * tiles.y;
+    area += share;
+    report.tile_metres += share * tile;
     report.snapped_repeats.push_back(tiles);
     report.mirrored = report.mirrored || chart.mirrored;
     fabric.lattice.push_back(std::move(made));
   }
   report.worst_partner_distance = partners.worst_distance;
-  report.tile_metres = map.tile_metres;
-  report.stitch_metres = map.stitch_metres;
+  if (area > 0) report.tile_metres /= area;
+  report.stitch_metres = map.stitch_metres * report.tile_metres / map.tile_metres;
   return fabric;
 }
 

@@ -45,6 +45,8 @@ const std::vector<AccuracyOption>& table() {
        [](const Scene& s) {
          return of_fabrics(s, [](const FabricSpec& f) { return fmt::format("{:g}", f.tolerance); });
        }},
+      {"joints", "how segments of a ply meet: cut square (gaps), with a sphere, or cut by the bisecting plane",
+       words("integrator.joints", {"open", "capsule", "mitre"}), [](const Scene& s) { return s.integrator.joints; }},
       {"warp",
        "cells along a tile's side of the lattice that bends the yarns; mesh = every vertex by the base mesh",
        {{"1", {"fabrics.*.lattice=1"}},
@@ -52,8 +54,13 @@ const std::vector<AccuracyOption>& table() {
         {"4", {"fabrics.*.lattice=4"}},
         {"mesh", {"fabrics.*.lattice=0"}}},
        [](const Scene& s) {
-         return of_fabrics(s, [](const FabricSpec& f) { return f.lattice ? std::to_string(f.lattice) : "mesh"; });
+         return of_fabrics(s, [](const FabricSpec& f) {  // A procedural fabric has a lattice always.
+           return f.lattice ? std::to_string(f.lattice) : f.storage == Storage::procedural ? "1" : "mesh";
+         });
        }},
+      {"normals", "frames that plies are shaded with: of each segment, or interpolated between joints",
+       words("integrator.normals", {"flat", "linear", "rotation-minimising"}),
+       [](const Scene& s) { return s.integrator.normals; }},
       {"detail", "fibres on plies: none, maps as KNIT21, maps, or a curve for every fibre",
        words("fabrics.*.detail", {"none", "paper", "maps", "fibres"}),
        [](const Scene& s) { return of_fabrics(s, detail_name); }},
@@ -71,10 +78,21 @@ const std::vector<AccuracyOption>& table() {
       {"light_sampling", "directions of direct light: from scattering, from lights, or both weighed (MIS)",
        words("integrator.light_sampling", {"bsdf", "light", "mis"}),
        [](const Scene& s) { return s.integrator.light_sampling; }},
+      {"precision", "arithmetic of rays and shading; what is stored stays float",
+       words("integrator.precision", {"float", "double"}), [](const Scene& s) { return s.integrator.precision; }},
       {"math", "what the kernels' compiler may do to arithmetic", words("integrator.math", {"relaxed", "exact"}),
        [](const Scene& s) { return s.integrator.math; }},
   };
   return options;
+}
+
+using Levels = std::vector<std::pair<std::string, std::string>>;
+
+Levels with(Levels levels, const Levels& changes) {
+  for (const auto& [option, level] : changes)
+    for (auto& [name, value] : levels)
+      if (name == option) value = level;
+  return levels;
 }
 
 }  // namespace
@@ -104,56 +122,35 @@ const AccuracyOption& accuracy_option(const std::string& name) {
 }
 
 std::span<const AccuracyPreset> accuracy_presets() {
+  // The others as changes to it.
+  const Levels final = {{"local_stage", "exact"},
+                        {"curves", "0.05"},
+                        {"joints", "mitre"},
+                        {"warp", "mesh"},
+                        {"normals", "rotation-minimising"},
+                        {"detail", "maps"},
+                        {"ply_lobes", "full"},
+                        {"ply_shadows", "attenuated"},
+                        {"depth", "0"},
+                        {"light_choice", "power"},
+                        {"light_sampling", "mis"},
+                        {"precision", "float"},
+                        {"math", "exact"}};
   // A reference keeps maps: explicit fibres are another model of the ply, a hundred times as large.
   static const std::vector<AccuracyPreset> presets = {
-      {"draft",
-       "to place camera and lights",
-       {{"local_stage", "cell"},
-        {"curves", "0.2"},
-        {"warp", "mesh"},
-        {"detail", "none"},
-        {"ply_lobes", "paper"},
-        {"ply_shadows", "opaque"},
-        {"depth", "4"},
-        {"light_choice", "power"},
-        {"light_sampling", "mis"},
-        {"math", "exact"}}},
-      {"paper",
-       "as KNIT21 describes it",
-       {{"local_stage", "cell"},
-        {"curves", "0.1"},
-        {"warp", "mesh"},
-        {"detail", "paper"},
-        {"ply_lobes", "paper"},
-        {"ply_shadows", "opaque"},
-        {"depth", "16"},
-        {"light_choice", "power"},
-        {"light_sampling", "mis"},
-        {"math", "exact"}}},
-      {"final",
-       "what scenes have where they say nothing",
-       {{"local_stage", "exact"},
-        {"curves", "0.05"},
-        {"warp", "mesh"},
-        {"detail", "maps"},
-        {"ply_lobes", "full"},
-        {"ply_shadows", "attenuated"},
-        {"depth", "0"},
-        {"light_choice", "power"},
-        {"light_sampling", "mis"},
-        {"math", "exact"}}},
-      {"reference",
-       "to measure others against",
-       {{"local_stage", "exact"},
-        {"curves", "0.02"},
-        {"warp", "mesh"},
-        {"detail", "maps"},
-        {"ply_lobes", "full"},
-        {"ply_shadows", "attenuated"},
-        {"depth", "0"},
-        {"light_choice", "power"},
-        {"light_sampling", "mis"},
-        {"math", "exact"}}},
+      {"draft", "to place camera and lights",
+       with(
+           final,
+           {{"curves", "0.2"}, {"detail", "none"}, {"ply_lobes", "paper"}, {"ply_shadows", "opaque"}, {"depth", "4"}})},
+      {"paper", "as KNIT21 describes it",
+       with(final, {{"local_stage", "cell"},
+                    {"curves", "0.1"},
+                    {"detail", "paper"},
+                    {"ply_lobes", "paper"},
+                    {"ply_shadows", "opaque"},
+                    {"depth", "16"}})},
+      {"final", "what scenes have where they say nothing", final},
+      {"reference", "to measure others against", with(final, {{"curves", "0.02"}})},
   };
   return presets;
 }

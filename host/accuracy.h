@@ -14,8 +14,8 @@ struct AccuracyLevel {
   std::vector<std::string> overrides;  ///< "key.path=value"; "*" in a path: every element of that list
 };
 
-/// A choice between cheaper and dearer ways of doing the same. Levels go from the cheapest to the most accurate; the
-/// last one is what the others are measured against.
+/// A choice between ways of doing the same. Levels go from the plainest to the most accurate, which the others are
+/// measured against; plainer is not always cheaper (bench/results/prices.md).
 struct AccuracyOption {
   std::string name;
   std::string doc;

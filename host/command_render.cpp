@@ -13,19 +13,24 @@
 #include "host/rare_events.h"
 #include "host/rehearsal.h"
 #include "host/render.h"
+#include "host/sampling_report.h"
+#include "host/scene_identity.h"
+#include "host/stats.h"
 #include "host/stop.h"
 
 namespace wale {
 namespace {
 
-// "WxH" into the film's size.
-void apply_size(const std::string& size, FilmScene& film) {
-  int w = 0, h = 0, end = 0;
-  if (std::sscanf(size.c_str(), "%dx%d%n", &w, &h, &end) != 2 || size_t(end) != size.size() || w < 1 || h < 1 ||
-      w > 65536 || h > 65536)
-    user_error("--size {}: expected WIDTHxHEIGHT, each 1 to 65536, for example 768x768", size);
-  film.width = w;
-  film.height = h;
+// Samples per pixel at most: a goal decides itself where to stop.
+int most_samples(const RenderArgs& args, const IntegratorScene& integrator) {
+  constexpr int kTowardsError = 65536, kTowardsTime = 1 << 20;
+  if (args.error > 0 && args.spp > 0 && args.spp < int(kScrambles))
+    user_error(
+        "--error {:g} with --spp {}: noise is measured between {} samples and more of a pixel; valid: --spp {} or "
+        "more, or none",
+        args.error, args.spp, kScrambles, kScrambles);
+  if (args.spp > 0) return args.spp;
+  return args.error > 0 ? kTowardsError : args.seconds > 0 ? kTowardsTime : integrator.spp;
 }
 
 // The devices of a render and the scene on each of them.
@@ -39,14 +44,14 @@ class Devices {
   void upload(const World& world, const IntegratorScene& integrator, const RenderOptions& options) {
     for (const Device& device : open_) {
       const DeviceTraits& traits = device.traits();
-      const Features features = analyse(world, integrator, options.aovs, traits);
+      const Features features = features_of(traits, world, integrator, options);
       require_memory(device, memory_needs(world, features, pool_of(traits, integrator, options), traits));
     }
     const LocalStage stage = local_stage(integrator);
     std::vector<std::future<std::unique_ptr<SceneDevice>>> scenes;
     for (const Device& device : open_)
       scenes.push_back(std::async(open_.size() > 1 ? std::launch::async : std::launch::deferred,
-                                  [&] { return std::make_unique<SceneDevice>(device, world, stage); }));
+                                  [&] { return std::make_unique<SceneDevice>(device, world, stage, joints(integrator)); }));
     for (auto& scene : scenes) scenes_.push_back(scene.get());
     for (size_t d = 0; d < open_.size(); ++d) list_.push_back({&open_[d], scenes_[d].get()});
   }
@@ -128,7 +133,7 @@ Stats stats_of(const Scene& scene, const World& world, const std::vector<RenderD
   s.width = world.camera.width;
   s.height = world.camera.height;
   s.samples = r.counts.paths;
-  s.samples_per_pixel = r.samples;
+  s.samples_per_pixel = r.reached.mean;
   s.total_seconds = r.seconds;
   return s;
 }
@@ -140,6 +145,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   Scene scene = read_scene(args);
   if (!args.size.empty()) apply_size(args.size, scene.film);
   // Everything that can be refused is refused before the long work starts.
+  const int spp = most_samples(args, scene.integrator);
   bool aovs = false;
   for (const auto& output : args.outputs) {
     require_writable(output);
@@ -150,7 +156,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   start.step("read the scene");
   // Programs are compiled while the scene is knitted.
   Rehearsal rehearsal(args.device, [&](const DeviceTraits& traits) {
-    const Features features = foresee(scene, aovs, traits);
+    const Features features = foresee(scene, aovs, traits).with(args.also);
     auto stages = geometry_stages(features);
     for (auto& stage : wavefront_stages(features)) stages.push_back(std::move(stage));
     return Rehearsal::Plan{stages, features.options(), args.kernel_dir};
@@ -173,10 +179,11 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
     for (const auto& note : world.notes) fmt::print(stderr, "note: {}\n", note);
   start.step("knit");
   RenderOptions options;
-  options.spp = args.spp > 0 ? args.spp : scene.integrator.spp;
-  if (args.seconds > 0 && args.spp == 0) options.spp = 1 << 20;  // the clock decides
+  options.spp = spp;
+  options.error = args.error;
   options.seconds = args.seconds;
   options.aovs = aovs;
+  options.also = args.also;
   options.kernel_dir = args.kernel_dir;
   options.ready = catch_stop_signals;  // before the first ray there is nothing to keep
   devices.upload(world, scene.integrator, options);
@@ -185,7 +192,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
     fmt::print(stderr, "note: {} joints bend too tightly to be warped where rays meet them: their fabrics are stored\n",
                tight);
   Progress bar("render", args.quiet);
-  const Rendered r = render(devices.list(), world, scene.integrator, options, [&](double f) {
+  Rendered r = render(devices.list(), world, scene.integrator, options, [&](double f) {
     if (!args.outputs.empty()) image_coder();  // if it cannot be loaded, now rather than when all is rendered
     bar.update(f);
   });
@@ -193,19 +200,26 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   start.step("programs", r.program_seconds);
   start.step("first wave", r.first_sample_seconds);
 
+  const SamplingReport sampling{options.spp, options.error, options.seconds, r.stopped, r.reached};
+  r.image.figures = sampling_attributes(sampling);
+  r.image.attributes = {{kSceneAttribute, scene_identity(args.scene, args.set)},
+                        {kAccuracyAttribute, accuracy_settings(scene)}};
   for (const auto& output : args.outputs) write_image(r.image, output, scene.film.exposure, scene.film.view);
-  const Features features = analyse(world, scene.integrator, aovs, devices.list().front().device->traits());
+  const Features features =
+      features_of(devices.list().front().device->traits(), world, scene.integrator, options);
   if (!args.stats.empty()) {
     Stats stats = stats_of(scene, world, devices.list(), features, r, rehearsal.cached());
     stats.first_sample_seconds = start.seconds();
     stats.start = start.steps();
+    stats.sampling = sampling;
     write_stats(stats, args.stats);
   }
   if (!stop_requested()) rehearsal.finish();  // a render shorter than that would leave it to each one after it
   const double rays = double(r.counts.primary + r.counts.bounce + r.counts.shadow);
   if (!args.quiet)
-    fmt::print(stderr, "{} samples per pixel in {}, {:.2f} Mrays/s\n", r.samples, duration_text(r.seconds),
+    fmt::print(stderr, "{} in {}, {:.2f} Mrays/s\n", samples_text(r.reached), duration_text(r.seconds),
                1e-6 * rays / r.seconds);
+  if (const std::string text = goal_text(sampling); !text.empty() && !args.quiet) fmt::print(stderr, "{}\n", text);
   for (const RareEvent& e : kRareEvents)
     if (const uint64_t count = r.counts.events[e.counter];
         count && e.weight == RareEvent::Weight::warning && !args.quiet)

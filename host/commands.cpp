@@ -10,6 +10,7 @@
 #include "host/compare.h"
 #include "host/export_curves.h"
 #include "host/materials.h"
+#include "host/plan.h"
 #include "host/progress.h"
 #include "host/report.h"
 #include "host/stop.h"
@@ -51,12 +52,23 @@ std::vector<TextileMeasures> measures_of(const Scene& scene, const World& world)
 
 }  // namespace
 
-Scene read_scene(const SceneArgs& args) {
+void apply_size(const std::string& size, FilmScene& film) {
+  int w = 0, h = 0, end = 0;
+  if (std::sscanf(size.c_str(), "%dx%d%n", &w, &h, &end) != 2 || size_t(end) != size.size() || w < 1 || h < 1 ||
+      w > 65536 || h > 65536)
+    user_error("--size {}: expected WIDTHxHEIGHT, each 1 to 65536, for example 768x768", size);
+  film.width = w;
+  film.height = h;
+}
+
+std::vector<std::string> overrides_of(const SceneArgs& args) {
   std::vector<std::string> overrides;
   if (!args.preset.empty()) overrides = accuracy_preset(args.preset).overrides();
   overrides.insert(overrides.end(), args.set.begin(), args.set.end());
-  return read_scene(args.scene, overrides);
+  return overrides;
 }
+
+Scene read_scene(const SceneArgs& args) { return read_scene(args.scene, overrides_of(args)); }
 
 int run_build(const SceneArgs& args, const std::filesystem::path& json, const Loaders& loaders) {
   require_json_path(json);
@@ -72,10 +84,9 @@ int run_plan(const SceneArgs& args, const std::filesystem::path& json, const Loa
   const Scene scene = read_scene(args);
   const Device device = Device::open(one_device_number(args.device));
   const World world = world_of(scene, loaders, args.quiet);
-  const SceneDevice on_device(device, world, local_stage(scene.integrator));
-  const Features features = analyse(world, scene.integrator, true, device.traits());
-  deliver(json, plan_json(world, on_device, scene.integrator, features),
-          plan_text(world, on_device, scene.integrator, features));
+  const SceneDevice on_device(device, world, local_stage(scene.integrator), joints(scene.integrator));
+  const Plan plan = plan_render(device, scene, world, on_device, args.also);
+  deliver(json, plan_json(plan), plan_text(plan));
   return 0;
 }
 

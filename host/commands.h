@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "host/features.h"
 #include "host/world.h"
 
 namespace wale {
@@ -11,19 +12,26 @@ namespace wale {
 struct SceneArgs {
   std::filesystem::path scene;
   std::vector<std::string> set;
-  std::string preset;  ///< of accuracy (host/accuracy.h), applied before `set`; empty = the scene's own
+  std::string preset;        ///< of accuracy (host/accuracy.h), applied before `set`; empty = the scene's own
   std::string device = "0";  ///< as device_numbers() reads it
   std::filesystem::path kernel_dir;
   bool quiet = false;
+  Features also;  ///< built into the programs beside what the scene calls for
 };
 
 struct RenderArgs : SceneArgs {
   std::vector<std::filesystem::path> outputs;
   int spp = 0;
-  double seconds = 0;
+  double error = 0, seconds = 0;  ///< goals; 0: not set
   std::string size;
   std::filesystem::path stats;
 };
+
+/// Puts "WIDTHxHEIGHT" into the film's size; throws a user error for anything else.
+void apply_size(const std::string& size, FilmScene& film);
+
+/// Those of the preset, then those of --set.
+std::vector<std::string> overrides_of(const SceneArgs& args);
 
 /// The scene of a command, with its overrides.
 Scene read_scene(const SceneArgs& args);

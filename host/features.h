@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "host/fabric_device.h"
+#include "shared/normals.h"
 #include "shared/wale_types.h"
 
 namespace wale {
@@ -11,6 +12,13 @@ struct World;
 struct Scene;
 struct IntegratorScene;
 
+/// Frames that plies are shaded with: W_NORMALS_* of kernels/shared/normals.h.
+enum class Normals : uint32_t {
+  flat = W_NORMALS_FLAT,
+  linear = W_NORMALS_LINEAR,
+  rotation_minimising = W_NORMALS_ROTATION_MINIMISING
+};
+
 /// What a scene asks for. Structure that is absent is neither compiled, launched nor stored; values are run-time data.
 struct Features {
   bool plies = false, fibres = false;  ///< curves shaded as plies, and as single fibres
@@ -18,6 +26,7 @@ struct Features {
   bool environment = false, lights = false;  ///< lights: something is sampled by next-event estimation
   bool detail = false;                       ///< fibres show on plies, by maps
   bool paper_lobes = false;                  ///< bodies of plies are Lambert lobes
+  bool double_precision = false;             ///< rays and shading in double, one lane
   bool relaxed_math = false;                 ///< the compiler may reorder and approximate
   bool aovs = false;
   bool mesh_warp = false;       ///< some plies are warped by the base mesh itself
@@ -25,6 +34,7 @@ struct Features {
   bool procedural = false;      ///< some leaves keep no points
   bool ply_colors = false;      ///< colours that vary over the cloth
   LocalStage local_stage = LocalStage::exact;
+  Normals normals = Normals::rotation_minimising;  ///< a value: no definition
   int lanes = 1;
   bool simt = false;  ///< rays go down quantised nodes, one per work-item
 
@@ -33,6 +43,12 @@ struct Features {
 
   /// Definitions for the kernels.
   std::string options() const;
+
+  /// The same with the structure of others built in too, whether the scene has it or not; what is a choice (local stage,
+  /// lobes, arithmetic, lanes) stays as it is. The picture is the same, bit for bit.
+  Features with(const Features& others) const;
+  /// Every structure that may be built in.
+  static Features everything();
 };
 
 /// One decision and the object or key that asks for it; the lines of `wale plan`.
@@ -46,10 +62,12 @@ struct Reason {
 bool quantised_tree(const DeviceTraits& traits, LocalStage stage);
 /// Stage that a scene's integrator.local_stage names.
 LocalStage local_stage(const IntegratorScene& integrator);
+/// Joints that a scene's integrator.joints names.
+Joints joints(const IntegratorScene& integrator);
 Features analyse(const World& world, const IntegratorScene& integrator, bool aovs, const DeviceTraits& traits);
 /// The same from the scene alone, before anything is knitted: what analyse() will say, unless a fabric turns out empty
-/// or so large that it is held procedurally unasked, or a light's image black. For programs that are compiled ahead
-/// (host/rehearsal.h); nothing else may rest on it.
+/// or so large that it is held procedurally unasked. For programs that are compiled ahead (host/rehearsal.h); nothing
+/// else may rest on it.
 Features foresee(const Scene& scene, bool aovs, const DeviceTraits& traits);
 std::vector<Reason> explain(const World& world, const IntegratorScene& integrator, const Features& features);
 

@@ -1,5 +1,6 @@
 #include "host/fibre_tables.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "appearance/fibre_phase.clh"
@@ -13,6 +14,10 @@ double whole_turns(double angle, double ply_radius) {
 }
 
 }  // namespace
+
+bool FibreTables::any() const {
+  return std::any_of(details.begin(), details.end(), [](const auto& d) { return d.level != W_DETAIL_NONE; });
+}
 
 void FibreTables::add(const FibreRecipe& wanted, double ply_radius, Detail level) {
   static_assert(W_DETAIL_BINS == FibreDetail::kBins);

@@ -14,7 +14,7 @@ struct FibreTables {
   std::vector<uint32_t> offsets;      ///< W_DETAIL_BINS + 1 per material with detail
   std::vector<w_float4> candidates;   ///< distance, cosine and sine of the angle, migration phase
 
-  bool any() const { return !candidates.empty(); }
+  bool any() const;  ///< some material shows its fibres by maps
   /// Appends the next ply material. ply_radius in metres; turns and migrations become whole numbers per
   /// W_LENGTH_PERIOD, where stored lengths wrap.
   void add(const FibreRecipe& recipe, double ply_radius, Detail level);

@@ -7,6 +7,30 @@
 
 namespace wale {
 
+PixelStatistics pixel_statistics(std::span<const w_float4> scrambles, const std::array<double, 3>& weights) {
+  PixelStatistics p;
+  const auto value = [&](const w_float4& s) { return weights[0] * s.x + weights[1] * s.y + weights[2] * s.z; };
+  for (const w_float4& s : scrambles) {
+    p.mean += value(s);
+    p.samples += s.w;
+    p.scrambles += s.w > 0;
+  }
+  if (p.samples == 0) return p;
+  p.mean /= p.samples;
+  if (p.scrambles < 2) return p;
+  // Scrambles are independent of each other: with m_g the mean of scramble g, of n_g samples, and w_g = n_g/n, the sum
+  // of w_g^2 (m_g - m)^2 is 1 - sum of w_g^2 times the variance of m on average, where that of m_g is as 1/n_g.
+  double spread = 0, together = 0;
+  for (const w_float4& s : scrambles) {
+    if (s.w == 0) continue;
+    const double w = s.w / p.samples, off = w * (value(s) / s.w - p.mean);
+    spread += off * off;
+    together += w * w;
+  }
+  p.variance = spread / (1 - together);
+  return p;
+}
+
 Image develop(const FilmSums& sums, const double origin[3]) {
   Image image;
   image.width = sums.width;
@@ -22,30 +46,16 @@ Image develop(const FilmSums& sums, const double origin[3]) {
   image.pixels.assign(pixels * stride, 0.0f);
   for (size_t i = 0; i < pixels; ++i) {
     float* out = image.pixels.data() + i * stride;
-    std::array<double, 3> sum{};
     double count = 0;
-    int groups = 0;
-    for (size_t g = 0; g < kScrambles; ++g) {
-      const w_float4& s = sums.radiance[i * kScrambles + g];
-      sum[0] += s.x, sum[1] += s.y, sum[2] += s.z;
-      count += s.w;
-      groups += s.w > 0;
+    for (size_t c = 0; c < 3; ++c) {
+      std::array<double, 3> channel{};
+      channel[c] = 1;
+      const auto p = pixel_statistics(std::span(sums.radiance).subspan(i * kScrambles, kScrambles), channel);
+      count = p.samples;
+      out[c] = float(p.mean);
+      out[3 + c] = float(std::min(p.variance, double(FLT_MAX)));  // squares of 1e20 and more
     }
     if (count == 0) continue;
-    for (int c = 0; c < 3; ++c) out[c] = float(sum[c] / count);
-    // Scrambles are independent of each other: with m_g the mean of scramble g and weights w_g = n_g/n, the variance of
-    // the pixel is sum w_g^2 (m_g - m)^2 * G/(G-1), exact for equal counts.
-    if (groups > 1)
-      for (int c = 0; c < 3; ++c) {
-        double spread = 0;
-        for (size_t g = 0; g < kScrambles; ++g) {
-          const w_float4& s = sums.radiance[i * kScrambles + g];
-          if (s.w == 0) continue;
-          const double mean = (c == 0 ? s.x : c == 1 ? s.y : s.z) / s.w, w = s.w / count;
-          spread += w * w * (mean - sum[c] / count) * (mean - sum[c] / count);
-        }
-        out[3 + c] = float(std::min(spread * groups / (groups - 1), double(FLT_MAX)));  // squares of 1e20 and more
-      }
     out[6] = float(count);
     if (!aov) continue;
     const w_float4* a = &sums.aov[i * 4];

@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <span>
 #include <vector>
 
 #include "host/image.h"
@@ -16,6 +18,14 @@ struct FilmSums {
   std::vector<w_float4> aov;       ///< width*height*4, or empty: albedo+depth, normal+u, tangent+v, position
   std::vector<uint32_t> ply;       ///< width*height, or empty: ply seen by the first sample
 };
+
+/// What a pixel's scrambles say of one quantity: weights . rgb.
+struct PixelStatistics {
+  double samples = 0, mean = 0;
+  double variance = 0;  ///< of the mean; 0 where fewer than two scrambles hold samples
+  int scrambles = 0;    ///< that hold samples
+};
+PixelStatistics pixel_statistics(std::span<const w_float4> scrambles, const std::array<double, 3>& weights);
 
 /// Pixel means, the variance of each mean (from the spread of the scrambles that hold samples), sample counts and,
 /// where gathered, the first-hit features. `origin` is added back to positions. Channels: R G B, variance.R/G/B,

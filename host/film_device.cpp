@@ -1,16 +1,26 @@
 #include "host/film_device.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "geom/error.h"
 
 namespace wale {
 namespace {
 
-constexpr uint32_t kTile = 8;    // W_TILE of path_state.clh
+constexpr uint32_t kTile = 8;
+static_assert(kTile * kTile == kTilePixels);
 constexpr size_t kFeatures = 4;  // vectors of accumulate_aov
 
 uint64_t tiles(int n) { return (uint64_t(n) + kTile - 1) / kTile; }
+
+// Place in the picture's rows of a pixel by its number; none outside of the picture.
+std::optional<size_t> row_pixel(const FilmSums& film, uint32_t number) {
+  const uint32_t columns = uint32_t(tiles(film.width)), tile = number / kTilePixels, inside = number % kTilePixels;
+  const uint32_t x = tile % columns * kTile + inside % kTile, y = tile / columns * kTile + inside / kTile;
+  if (x >= uint32_t(film.width) || y >= uint32_t(film.height)) return {};
+  return size_t(y) * size_t(film.width) + x;
+}
 
 }  // namespace
 
@@ -46,6 +56,15 @@ std::vector<FilmDevice::Piece> FilmDevice::pieces(uint32_t first, uint32_t count
     done += here;
   }
   return out;
+}
+
+std::vector<size_t> FilmDevice::bands_of(const std::vector<uint32_t>& tiles) const {
+  std::vector<bool> used(bands_.size());
+  for (const uint32_t tile : tiles) used[tile / (band_pixels_ / kTilePixels)] = true;
+  std::vector<size_t> bands;
+  for (size_t band = 0; band < used.size(); ++band)
+    if (used[band]) bands.push_back(band);
+  return bands;
 }
 
 uint64_t FilmDevice::bytes() const {
@@ -87,18 +106,15 @@ void FilmDevice::write(uint32_t first, const PixelSums& sums) {
 }
 
 void scatter(const PixelSums& sums, uint32_t first, FilmSums& film) {
-  const uint32_t columns = uint32_t(tiles(film.width));
   for (size_t i = 0; i < sums.radiance.size() / kScrambles; ++i) {
-    const uint32_t number = first + uint32_t(i), tile = number / (kTile * kTile), inside = number % (kTile * kTile);
-    const uint32_t x = tile % columns * kTile + inside % kTile, y = tile / columns * kTile + inside / kTile;
-    if (x >= uint32_t(film.width) || y >= uint32_t(film.height)) continue;
-    const size_t pixel = size_t(y) * size_t(film.width) + x;
+    const auto pixel = row_pixel(film, first + uint32_t(i));
+    if (!pixel) continue;
     std::copy_n(sums.radiance.begin() + std::ptrdiff_t(i * kScrambles), kScrambles,
-                film.radiance.begin() + std::ptrdiff_t(pixel * kScrambles));
+                film.radiance.begin() + std::ptrdiff_t(*pixel * kScrambles));
     if (sums.aov.empty()) continue;
     std::copy_n(sums.aov.begin() + std::ptrdiff_t(i * kFeatures), kFeatures,
-                film.aov.begin() + std::ptrdiff_t(pixel * kFeatures));
-    film.ply[pixel] = sums.ply[i];
+                film.aov.begin() + std::ptrdiff_t(*pixel * kFeatures));
+    film.ply[*pixel] = sums.ply[i];
   }
 }
 

@@ -1,11 +1,15 @@
 #pragma once
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "host/device.h"
 #include "host/film.h"
 
 namespace wale {
+
+/// Pixels of a tile, 8 x 8 (W_TILE of kernels/stages/path_state.clh).
+constexpr uint32_t kTilePixels = 64;
 
 /// Pixels of a picture when they are numbered along its 8 x 8 tiles, those outside the picture counted too.
 uint64_t padded_pixels(int width, int height);
@@ -30,6 +34,10 @@ class FilmDevice {
     uint32_t in_band, in_run, count;  ///< first pixel, counted from the band's and from the run's start; pixels
   };
   std::vector<Piece> pieces(uint32_t first, uint32_t count) const;
+  /// Bands that hold pixels of these tiles, each once.
+  std::vector<size_t> bands_of(const std::vector<uint32_t>& tiles) const;
+  /// First pixel of a band and how many it holds at most.
+  std::pair<uint32_t, uint32_t> pixels_of(size_t band) const { return {uint32_t(band) * band_pixels_, band_pixels_}; }
   const cl::Buffer& radiance(size_t band) const { return bands_[band].radiance.cl(); }
   const cl::Buffer& aov(size_t band) const { return bands_[band].aov.cl(); }
   const cl::Buffer& ply(size_t band) const { return bands_[band].ply.cl(); }

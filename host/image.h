@@ -1,8 +1,10 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace wale {
@@ -12,6 +14,8 @@ struct Image {
   int width = 0, height = 0;
   std::vector<std::string> channels;  ///< names, e.g. "R","G","B","albedo.R",...,"variance.R"
   std::vector<float> pixels;          ///< width*height*channels.size()
+  std::vector<std::pair<std::string, float>> figures{};  ///< numbers of an .exr's header, named "wale:..."
+  std::map<std::string, std::string> attributes{};       ///< and texts
   float* at(int x, int y) { return pixels.data() + (size_t(y) * width + x) * channels.size(); }
   const float* at(int x, int y) const { return pixels.data() + (size_t(y) * width + x) * channels.size(); }
 };

@@ -28,7 +28,7 @@ struct ImageCoder {
   std::string (*write_exr)(const Image& image, const std::string& file);
 };
 
-/// Name of the library that holds it, and of the function in it that returns the `const ImageCoder*`.
+/// Name of the library that holds it, and of the function in it that returns its address.
 constexpr const char* kImageCoderLibrary = "libwale_image_coder.so";
 constexpr const char* kImageCoderFunction = "wale_image_coder";
 

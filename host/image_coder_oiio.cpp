@@ -10,6 +10,8 @@
 namespace wale {
 namespace {
 
+const std::string kOurs = "wale:";  // what the attributes that are ours begin with
+
 template <typename File>
 std::string reason(const File& file) {
   const std::string text = file ? file->geterror() : OIIO::geterror();
@@ -28,7 +30,15 @@ std::string decode(std::string_view bytes, const std::string& format, const std:
   channels.resize(size_t(std::max(0, spec.nchannels)));
   accept({spec.width, spec.height, channels, spec.alpha_channel, spec.deep,
           !spec.format.is_floating_point() && !OIIO::Strutil::iequals(space, "linear")});
-  image = {spec.width, spec.height, std::move(channels), {}};
+  image = {spec.width, spec.height, std::move(channels), {}, {}, {}};
+  for (const auto& attribute : spec.extra_attribs) {
+    const std::string name = attribute.name().string();
+    if (name.size() <= kOurs.size() || !name.starts_with(kOurs)) continue;
+    if (attribute.type() == OIIO::TypeString)
+      image.attributes[name] = attribute.get_string();
+    else
+      image.figures.emplace_back(name, attribute.get_float());
+  }
   image.pixels.resize(size_t(spec.width) * size_t(spec.height) * size_t(spec.nchannels));
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data())) return reason(input);
   return {};
@@ -50,6 +60,8 @@ std::string write_exr(const Image& image, const std::string& file) {
   OIIO::ImageSpec spec(image.width, image.height, int(image.channels.size()), OIIO::TypeDesc::FLOAT);
   spec.channelnames = image.channels;
   spec.attribute("compression", "zip");
+  for (const auto& [name, value] : image.figures) spec.attribute(name, value);
+  for (const auto& [name, value] : image.attributes) spec.attribute(name, value);
   const auto output = OIIO::ImageOutput::create(file);
   if (!output || !output->open(file, spec) || !output->write_image(spec.format, image.pixels.data()) ||
       !output->close())
@@ -62,4 +74,4 @@ constexpr ImageCoder kCoder{decode, encode_png, write_exr};
 }  // namespace
 }  // namespace wale
 
-extern "C" const wale::ImageCoder* wale_image_coder() { return &wale::kCoder; }
+extern "C" const void* wale_image_coder() { return &wale::kCoder; }

@@ -28,7 +28,7 @@ void LatticeDevice::warp(const Device& device, std::span<const StoredRun> runs, 
   device.queue().finish();
 }
 
-std::vector<Box> LatticeDevice::boxes(const Device& device, const std::vector<uint32_t>& leaves,
+std::vector<Box> LatticeDevice::boxes(const Device& device, const std::vector<uint32_t>& leaves, Joints joints,
                                       uint32_t& tight) const {
   const Buffer<uint32_t> numbers(device, leaves);
   const Buffer<Box> boxes(device, leaves.size());
@@ -39,9 +39,10 @@ std::vector<Box> LatticeDevice::boxes(const Device& device, const std::vector<ui
   kernel.setArg(1, lattice.cl());
   kernel.setArg(2, tiles.cl());
   kernel.setArg(3, patch_bits);
-  kernel.setArg(4, boxes.cl());
-  kernel.setArg(5, found.cl());
-  kernel.setArg(6, uint32_t(leaves.size()));
+  kernel.setArg(4, uint32_t(joints));
+  kernel.setArg(5, boxes.cl());
+  kernel.setArg(6, found.cl());
+  kernel.setArg(7, uint32_t(leaves.size()));
   device.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device.large_global(leaves.size()), device.local());
   tight = found.read(device)[0];
   return boxes.read(device);

@@ -21,9 +21,10 @@ struct LatticeDevice {
   void warp(const Device& device, std::span<const StoredRun> runs, const Buffer<float>& points,
             const Buffer<float>& frames) const;
 
-  /// Boxes of the leaves (numbers without W_LEAF_PROCEDURAL), and how many joints inside them are bent too far, or have
+  /// Boxes of the leaves (numbers without W_LEAF_PROCEDURAL), and how many mitres inside them are bent too far, or have
   /// edges too short, for procedural leaves.
-  std::vector<Box> boxes(const Device& device, const std::vector<uint32_t>& leaves, uint32_t& tight) const;
+  std::vector<Box> boxes(const Device& device, const std::vector<uint32_t>& leaves, Joints joints,
+                         uint32_t& tight) const;
 };
 
 }  // namespace wale

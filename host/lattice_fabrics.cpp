@@ -32,8 +32,8 @@ size_t lattice_vertices(const Fabric& fabric) {
   return vertices;
 }
 
-LatticeFabrics place_lattices(const Device& device, std::vector<LatticeInput> inputs, dvec3 origin, size_t first_vertex,
-                              size_t& plies) {
+LatticeFabrics place_lattices(const Device& device, std::vector<LatticeInput> inputs, dvec3 origin, Joints joints,
+                              size_t first_vertex, size_t& plies) {
   std::vector<bool> stored;
   for (LatticeInput& input : inputs) {
     stored.push_back(!input.fabric->procedural);
@@ -54,7 +54,7 @@ LatticeFabrics place_lattices(const Device& device, std::vector<LatticeInput> in
       }
     if (next >= kMostIds)
       user_error("fabrics: {:.3g} ply vertices are more than can be numbered; use fewer repeats", double(next));
-    const LatticeTables tables(inputs, origin);
+    const LatticeTables tables(inputs, origin, joints);
     out.device = LatticeDevice(device, tables);
     bool again = false;
     for (size_t i = 0; i < inputs.size(); ++i) {
@@ -68,7 +68,7 @@ LatticeFabrics place_lattices(const Device& device, std::vector<LatticeInput> in
       }
       std::vector<uint32_t> leaves = tables.leaves(fabric);
       uint32_t tight = 0;
-      std::vector<Box> boxes = out.device.boxes(device, leaves, tight);
+      std::vector<Box> boxes = out.device.boxes(device, leaves, joints, tight);
       if (tight > 0) {
         all_tight += tight;
         stored[i] = again = true;

@@ -17,10 +17,10 @@ struct LatticeFabrics {
 /// Ply vertices of a lattice fabric that is stored, ghosts included.
 size_t lattice_vertices(const Fabric& fabric);
 
-/// Numbers the fabrics and uploads their lattices. A procedural fabric with joints that need a sphere (pack.cl) inside
+/// Numbers the fabrics and uploads their lattices. A procedural fabric with mitres that need a sphere (pack.cl) inside
 /// a yarn becomes a stored one, of the same bits. `plies`: number of the first ply; set to that behind the last. Throws
 /// a user error when ids run out.
-LatticeFabrics place_lattices(const Device& device, std::vector<LatticeInput> inputs, dvec3 origin, size_t first_vertex,
-                              size_t& plies);
+LatticeFabrics place_lattices(const Device& device, std::vector<LatticeInput> inputs, dvec3 origin, Joints joints,
+                              size_t first_vertex, size_t& plies);
 
 }  // namespace wale

@@ -30,7 +30,7 @@ uint32_t patches_of(const TileYarn& yarn, uint32_t plies) {
   return (yarn.samples + most - 1) / most;
 }
 
-LatticeTables::LatticeTables(std::span<const LatticeInput> inputs, dvec3 origin) {
+LatticeTables::LatticeTables(std::span<const LatticeInput> inputs, dvec3 origin, Joints joints) : joints_(joints) {
   for (const LatticeInput& input : inputs) {
     uint32_t vertices = input.first_vertex, plies = input.first_ply;
     for (const LatticeChart& chart : input.fabric->lattice) add_chart(input, chart, vertices, plies, origin);
@@ -139,7 +139,13 @@ void LatticeTables::write_entry(Piece& piece, size_t number) {
     if (entry.open_start) head[W_LEAF_CUTS] |= 1u << p;
     if (entry.open_end) head[W_LEAF_CUTS] |= 1u << (16 + lanes - n + p);
   }
-  head[W_LEAF_SPHERES] = head[W_LEAF_CUTS];
+  head[W_LEAF_SPHERES] = joints_ == Joints::open ? 0 : head[W_LEAF_CUTS];
+  const uint32_t all = (1u << lanes) - 1u;
+  if (joints_ != Joints::mitre) head[W_LEAF_CUTS] = all | all << 16;
+  if (joints_ == Joints::capsule) {
+    head[W_LEAF_SPHERES] |= all;
+    head[W_LEAF_LAYOUT] |= W_LAYOUT_CAPSULES;
+  }
   head[W_PATCH_VERTEX] = run.table + entry.first * uint32_t(sizeof(WTileVertex) / 4);
   head[W_PATCH_VERTEX_STRIDE] = run.stride;
   head[W_PATCH_CORNER] = run.corner;

@@ -32,7 +32,7 @@ uint32_t patches_of(const TileYarn& yarn, uint32_t plies);
 class LatticeTables {
  public:
   /// Throws a user error where the leaves cannot be numbered.
-  LatticeTables(std::span<const LatticeInput> inputs, dvec3 origin);
+  LatticeTables(std::span<const LatticeInput> inputs, dvec3 origin, Joints joints = Joints::mitre);
 
   const std::vector<uint32_t>& words() const { return words_; }
   const std::vector<float>& lattice() const { return lattice_; }
@@ -66,6 +66,7 @@ class LatticeTables {
   /// Calls visit(piece, entry number, tile) in the order of leaf numbers.
   void for_each(uint32_t fabric, const std::function<void(const Piece&, size_t, ivec2)>& visit) const;
 
+  Joints joints_;
   std::vector<Piece> pieces_;
   std::vector<uint32_t> words_;
   std::vector<float> lattice_;

@@ -86,8 +86,8 @@ EnvironmentTables environment_tables(const std::vector<float>& rgb, int width, i
 
 int LightTableBuilder::add(WLight light, double power) {
   tables_.lights.push_back(light);
-  power_.push_back(power);
-  return int(power_.size()) - 1;
+  tables_.power.push_back(power);
+  return int(tables_.power.size()) - 1;
 }
 
 int LightTableBuilder::add_sphere(const std::array<float, 3>& radiance, const std::array<float, 3>& center,
@@ -137,18 +137,27 @@ int LightTableBuilder::add_environment(const std::array<float, 3>& mean_radiance
   return add(light, mean(mean_radiance) * 4 * kPi * kPi * power_radius * power_radius);
 }
 
-LightTables LightTableBuilder::finish(LightChoice choice) {
+void LightTables::choose() {
   double total = 0;
   int lit = 0;
-  for (const double p : power_) {
+  for (const double p : power) {
     total += p;
     lit += p > 0;
   }
   // A tenth is shared evenly: a weak lamp beside the sky still lights what is near it.
-  for (size_t i = 0; i < power_.size(); ++i)
-    if (power_[i] > 0)
-      tables_.lights[i].radiance.w =
-          choice == LightChoice::power ? float(0.9 * power_[i] / total + 0.1 / lit) : 1.0f / float(lit);
+  for (size_t i = 0; i < power.size(); ++i) {
+    const double share = choice == LightChoice::power ? 0.9 * power[i] / total + 0.1 / lit : 1.0 / lit;
+    lights[i].radiance.w = power[i] > 0 ? float(share) : 0;
+  }
+}
+
+bool LightTables::any() const {
+  return std::any_of(power.begin(), power.end(), [](double p) { return p > 0; });
+}
+
+LightTables LightTableBuilder::finish(LightChoice choice) {
+  tables_.choice = choice;
+  tables_.choose();
   return std::move(tables_);
 }
 

@@ -32,6 +32,13 @@ struct LightTables {
   std::vector<float> cdf;               ///< per mesh light: running share of area
   std::vector<float> triangles;         ///< 9 per triangle
   std::vector<int32_t> triangle_index;  ///< triangle of the scene
+  std::vector<double> power;            ///< per light; those of power 0 are never chosen
+  LightChoice choice = LightChoice::power;
+
+  /// Sets the probabilities of choosing lights.
+  void choose();
+  /// Some light may be chosen.
+  bool any() const;
 };
 
 /// Adds lights one after the other; finish() sets the probabilities of choosing them, none of them 0 unless the light
@@ -50,7 +57,6 @@ class LightTableBuilder {
  private:
   int add(WLight light, double power);
   LightTables tables_;
-  std::vector<double> power_;
 };
 
 }  // namespace wale

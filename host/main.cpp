@@ -9,6 +9,7 @@
 #include "geom/error.h"
 #include "host/accuracy.h"
 #include "host/commands.h"
+#include "host/cost/command.h"
 #include "host/device.h"
 #include "host/device_fault.h"
 #include "host/suggest.h"
@@ -46,6 +47,15 @@ void add_device_options(CLI::App& command, SceneArgs& args, const std::string& d
   command.add_option("--kernel-dir", args.kernel_dir, "read kernels from this folder instead of the built-in ones");
 }
 
+void add_features_option(CLI::App& command, wale::Features& also) {
+  command
+      .add_option_function<std::string>(
+          "--features",
+          [&also](const std::string& word) { also = word == "all" ? wale::Features::everything() : wale::Features(); },
+          "what is built into the kernels: needed (what the scene calls for, the default) or all; same picture")
+      ->check(CLI::IsMember({"needed", "all"}));
+}
+
 // What CLI11 could not place, with the nearest valid word.
 std::string advice(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> left = app.remaining(true);
@@ -77,9 +87,12 @@ int run(int argc, char** argv) {
   auto* c = app.add_subcommand("render", "render a scene to images (.exr with features, .png)");
   add_scene_options(*c, render);
   add_device_options(*c, render, "its number, several with commas between them, or all");
+  add_features_option(*c, render.also);
   c->add_option("-o,--output", render.outputs, "image to write (repeatable)")->required()->allow_extra_args(false);
-  c->add_option("--spp", render.spp, "samples per pixel")->check(CLI::Range(1, 1 << 24));
-  c->add_option("--seconds", render.seconds, "stop after this many seconds")->check(finite_number(false));
+  c->add_option("--spp", render.spp, "samples per pixel; with --error the most")->check(CLI::Range(1, 1 << 24));
+  c->add_option("--error", render.error, "stop each tile at this noise, relative to its mean: 0.05")
+      ->check(finite_number(false));
+  c->add_option("--seconds", render.seconds, "stop after this many seconds of rendering")->check(finite_number(false));
   c->add_option("--size", render.size, "WIDTHxHEIGHT");
   c->add_option("--stats", render.stats, "write what was done as JSON");
   c->callback([&] { status = wale::run_render(render, loaders); });
@@ -94,8 +107,22 @@ int run(int argc, char** argv) {
   c = app.add_subcommand("plan", "say what will be simulated and why");
   add_scene_options(*c, scene);
   add_device_options(*c, scene, "its number");
+  add_features_option(*c, scene.also);
   c->add_option("--json", json, "write the plan as JSON (- for the terminal)");
   c->callback([&] { status = wale::run_plan(scene, json, loaders); });
+  wale::CostArgs cost;
+  for (int i = 0; i < argc; ++i) cost.command += (i ? " " : "") + std::string(argv[i]);
+  c = app.add_subcommand("cost",
+                         "measure what every accuracy option costs on this scene and device, and what it changes");
+  add_scene_options(*c, cost);
+  add_device_options(*c, cost, "its number");
+  c->add_option("-o,--output", cost.output, "folder for cost.csv, cost.json, pareto.svg, pareto.png, index.html")
+      ->required();
+  c->add_option("--minutes", cost.minutes, "time for everything, 10 unless given")->check(finite_number(false));
+  c->add_option("--size", cost.size, "WIDTHxHEIGHT; default: the film's, made smaller");
+  c->add_option("--reference", cost.reference, "compare with this .exr of `wale render` instead of rendering one");
+  c->add_option("--options", cost.options, "only these, with commas between them; presets stands for the presets");
+  c->callback([&] { status = wale::run_cost(cost, loaders); });
   c = app.add_subcommand("export", "write the ply curves: .obj, .pbrt, .txt (Mitsuba), .usda");
   add_scene_options(*c, scene);
   add_device_options(*c, scene, "its number");

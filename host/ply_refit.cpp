@@ -5,13 +5,14 @@
 
 namespace wale {
 PlyRefit::PlyRefit(const Device& device, const Buffer<uint32_t>& runs, const Buffer<float>& positions,
-                   const WideTree& wide, const PlyTree& tree)
+                   const WideTree& wide, const PlyTree& tree, Joints joints)
     : runs_(runs), level_offset_(wide.level_offset), parts_(tree.leaves.parts()) {
   const cl::Program program = build_program(device, "pack.cl");
   leaves_ = cl::Kernel(program, "refit_leaves");
   leaves_.setArg(0, runs_.cl());
   leaves_.setArg(1, positions.cl());
-  leaves_.setArg(6, tree.nodes.cl());
+  leaves_.setArg(6, uint32_t(joints));
+  leaves_.setArg(7, tree.nodes.cl());
   nodes_ = cl::Kernel(program, "refit_nodes");
   nodes_.setArg(0, tree.nodes.cl());
 }

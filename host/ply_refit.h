@@ -9,6 +9,7 @@
 namespace wale {
 
 struct PlyTree;
+enum class Joints : uint32_t;
 
 /// What a tree of plies needs to follow moved positions without being built again: about one byte a segment. Nodes
 /// keep their children; leaves and all boxes change, on the device alone. A tree whose positions did not move stays bit
@@ -18,7 +19,7 @@ class PlyRefit {
   PlyRefit() = default;
   /// `runs` as kernel pack_leaves takes them; all buffers are kept.
   PlyRefit(const Device& device, const Buffer<uint32_t>& runs, const Buffer<float>& positions, const WideTree& wide,
-           const PlyTree& tree);
+           const PlyTree& tree, Joints joints);
 
   /// Packs and refits what `positions` holds now; returns before the device is done.
   void run(const Device& device);

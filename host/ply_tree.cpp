@@ -75,7 +75,7 @@ void refuse_if_too_far(const PlyPatch& patch, const Box& box) {
 }  // namespace
 
 PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, const Buffer<float>& positions,
-                       std::span<const Box> group_box, bool updatable, ProceduralLeaves procedural) {
+                       std::span<const Box> group_box, bool updatable, ProceduralLeaves procedural, Joints joints) {
   if (updatable && !group_box.empty()) bug("ply tree: a tree of cells cannot be refitted");
   if (updatable && !procedural.number.empty()) bug("ply tree: procedural leaves cannot be refitted");
   PlyTree tree;
@@ -107,7 +107,8 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
     cl::Kernel pack(build_program(device, "pack.cl"), "pack_leaves");
     pack.setArg(0, runs.cl());
     pack.setArg(1, positions.cl());
-    pack.setArg(6, box_buffer.cl());
+    pack.setArg(6, uint32_t(joints));
+    pack.setArg(7, box_buffer.cl());
     for (const LeafBuffers::Part& part : tree.leaves.parts()) {
       pack.setArg(2, part.words.cl());
       pack.setArg(3, part.first_number);
@@ -136,7 +137,7 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
   if (!patches.empty() && (device.traits().traversal == Traversal::lanes || updatable))
     place_leaves(device, uint32_t(wide.nodes()), tree);
   tree.node_cell = Buffer<uint32_t>(device, group_box.empty() ? std::vector<uint32_t>{} : wide.node_cell);
-  if (updatable) tree.refit = std::make_unique<PlyRefit>(device, runs, positions, wide, tree);
+  if (updatable) tree.refit = std::make_unique<PlyRefit>(device, runs, positions, wide, tree, joints);
   tree.node_count = wide.nodes();
   if (device.traits().traversal == Traversal::simt && group_box.empty()) {
     tree.quantised = QuantisedTree(device, wide, tree.nodes);

@@ -9,6 +9,7 @@
 #include "host/leaf_buffers.h"
 #include "host/ply_refit.h"
 #include "host/quantised_tree.h"
+#include "shared/joints.h"
 
 namespace wale {
 
@@ -32,6 +33,9 @@ struct ProceduralLeaves {
   std::vector<uint32_t> number;
   std::vector<Box> box;
 };
+
+/// How segments meet: W_JOINTS_* of kernels/shared/joints.h.
+enum class Joints : uint32_t { open = W_JOINTS_OPEN, capsule = W_JOINTS_CAPSULE, mitre = W_JOINTS_MITRE };
 
 /// Leaves and tree over patches, on the device.
 struct PlyTree {
@@ -69,7 +73,8 @@ constexpr float kLargestCoordinate = 1e12f;
 /// Throws a device error when a leaf buffer would not fit, and a user error when a ply reaches farther out than
 /// kLargestCoordinate, or has a vertex or radius that is no number.
 PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, const Buffer<float>& positions,
-                       std::span<const Box> group_box = {}, bool updatable = false, ProceduralLeaves procedural = {});
+                       std::span<const Box> group_box = {}, bool updatable = false, ProceduralLeaves procedural = {},
+                       Joints joints = Joints::mitre);
 
 /// Lets an updatable tree, free of cells, follow what the buffer of positions that it was built from holds now; nothing
 /// is allocated. Waits for the device. Throws a user error when a ply reaches farther out than kLargestCoordinate.

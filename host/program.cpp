@@ -1,5 +1,6 @@
 #include "host/program.h"
 
+#include <cctype>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -52,10 +53,30 @@ void expand(const std::string& text, const std::string& file, const std::filesys
   }
 }
 
+bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+
+bool mentions(const std::string& source, const std::string& name) {
+  for (size_t at = source.find(name); at != std::string::npos; at = source.find(name, at + 1))
+    if ((at == 0 || !is_word(source[at - 1])) && !is_word(source[at + name.size()])) return true;
+  return false;
+}
+
+// Without the definitions that the source says nothing of: scenes that differ elsewhere then share its program.
+std::string definitions_in(const std::string& source, const std::string& options) {
+  std::istringstream words(options);
+  std::string out;
+  for (std::string word; words >> word;) {
+    const std::string name = word.starts_with("-D") ? word.substr(2, word.find('=') - 2) : "";
+    if (name.empty() || mentions(source, name)) out += (out.empty() ? "" : " ") + word;
+  }
+  return out;
+}
+
 ProgramText with_options(const DeviceTraits& traits, const std::string& file, std::string source, std::string options) {
   options += " -cl-std=CL1.2" + traits.build_options;
   if (traits.compiles_at_launch) options += " -cl-kernel-arg-info";  // a Rehearsal asks for it
   if (options.find("W_LANES") == std::string::npos) options += fmt::format(" -DW_LANES={}", traits.lanes);
+  options = definitions_in(source, options);
   return {file, std::move(source), std::move(options)};
 }
 

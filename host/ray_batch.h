@@ -14,6 +14,7 @@ struct RayBatch {
   RayKind kind = RayKind::primary;
   WFrame frame{};  ///< of the wave; with slot and depth it decides each ray's key
   uint32_t depth = 0;
+  std::vector<uint32_t> tiles;    ///< of the wave
   std::vector<uint32_t> slots;    ///< of the wave's paths, in the order of the launch
   std::vector<w_float4> o, l, d;  ///< per ray; words as in kernels/stages/path_state.clh
   std::vector<w_float4> found;    ///< primary and bounce: t, kind, code (bits) as the render found them

@@ -7,6 +7,8 @@
 #include "geom/error.h"
 #include "host/device_fault.h"
 #include "host/driver_crash.h"
+#include "host/error_goal.h"
+#include "host/shared_film.h"
 #include "host/stop.h"
 #include "host/work_list.h"
 
@@ -23,6 +25,10 @@ WFrame frame_of(const World& world, const IntegratorScene& integrator) {
   frame.max_depth = uint32_t(integrator.max_depth);
   frame.roulette_depth = uint32_t(integrator.russian_roulette_depth);
   frame.light_sampling = integrator.light_sampling == "mis" ? 0 : integrator.light_sampling == "light" ? 1 : 2;
+  if (world.first_hits_only) {  // a path that samples lights only ends with its last scattering event
+    frame.max_depth = 1;
+    frame.light_sampling = 1;
+  }
   frame.opaque_shadows = integrator.ply_shadows == "opaque";
   frame.lights = uint32_t(world.lights.lights.size());
   frame.spheres = uint32_t(world.spheres.size());
@@ -35,19 +41,28 @@ uint32_t block_size(uint32_t smallest_pool, uint64_t pixels, size_t devices) {
   return uint32_t(std::max<uint64_t>(1, tiles)) * 64;
 }
 
+// Shares of a wave: less than the smallest is not worth starting before the time is up. Waves are planned for a part of
+// what is left, as a small wave takes longer per path than the one before, by which it is planned.
+constexpr double kSmallestWave = 1.0 / 32, kPlannedShare = 0.8;
+
 // One render, shared.
 class Job {
  public:
   Job(std::span<const RenderDevice> devices, const World& world, const IntegratorScene& integrator,
       const RenderOptions& options, const std::function<void(double)>& progress)
-      : devices_(devices), options_(options), progress_(progress), frame_(frame_of(world, integrator)) {
+      : devices_(devices),
+        options_(options),
+        progress_(progress),
+        aovs_(options.aovs || options.also.aovs),
+        frame_(frame_of(world, integrator)) {
     pixels_ = uint32_t(padded_pixels(world.camera.width, world.camera.height));
     waves_.resize(devices.size());
     result_.devices.resize(devices.size());
+    seconds_per_path_.resize(devices.size());
     const auto start = Clock::now();
     on_every_device([&](uint32_t d) {
       const Device& device = *devices[d].device;
-      const Features features = analyse(world, integrator, options.aovs, device.traits());
+      const Features features = features_of(device.traits(), world, integrator, options);
       const uint32_t pool = pool_of(device.traits(), integrator, options);
       waves_[d] =
           std::make_unique<Wavefront>(device, *devices[d].scene, features, world.camera, pool, options.kernel_dir);
@@ -57,25 +72,24 @@ class Job {
     result_.program_seconds = since(start);
     uint32_t pool = ~0u;
     for (const auto& wave : waves_) pool = std::min(pool, wave->pool());
-    block_pixels_ = block_size(pool, pixels_, devices.size());
-    list_ = std::make_unique<WorkList>((pixels_ + block_pixels_ - 1) / block_pixels_, uint32_t(options.spp),
-                                       uint32_t(devices.size()));
+    block_pixels_ = options.error > 0 ? kTilePixels : block_size(pool, pixels_, devices.size());
+    const uint32_t blocks = (pixels_ + block_pixels_ - 1) / block_pixels_;
+    list_ = std::make_unique<WorkList>(blocks, options.error > 0 ? 0 : uint32_t(options.spp), uint32_t(devices.size()),
+                                       options.seconds > 0);
+    std::vector<const FilmDevice*> films;
+    for (const auto& wave : waves_) films.push_back(&wave->film());
+    film_ = std::make_unique<SharedFilm>(std::move(films), *list_, pixels_, block_pixels_);
   }
 
   Rendered run(const World& world) {
     if (options_.ready) options_.ready();
     start_ = Clock::now();
-    on_every_device([&](uint32_t d) {
-      try {
-        work(d);
-      } catch (...) {
-        list_->stop();  // the others do not wait for this one's blocks
-        throw;
-      }
-    });
+    if (options_.error > 0)
+      work_towards_goal();
+    else
+      work_on_all();
     result_.seconds = since(start_);
-    result_.samples = int(list_->most_samples());
-    result_.stopped = !list_->complete();
+    result_.stopped |= !list_->complete();
     for (size_t d = 0; d < waves_.size(); ++d) {
       DeviceShare& share = result_.devices[d];
       share.counts = waves_[d]->counts();
@@ -84,7 +98,8 @@ class Job {
       result_.counts += share.counts;
     }
     const double origin[3] = {world.origin.x, world.origin.y, world.origin.z};
-    result_.image = develop(gather(world.camera.width, world.camera.height), origin);
+    result_.reached = film_->reached(options_.error, floor_.value_or(0));
+    result_.image = develop(film_->gather(world.camera.width, world.camera.height, aovs_), origin);
     return std::move(result_);
   }
 
@@ -120,55 +135,101 @@ class Job {
     return uint32_t(std::min<uint64_t>(uint64_t(blocks) * block_pixels_, pixels_ - first));
   }
 
+  std::vector<uint32_t> tiles_of(const WorkUnit& unit) const {
+    std::vector<uint32_t> tiles;
+    for (const uint32_t block : unit.blocks)
+      for (uint32_t i = 0; i < pixels_in(block, 1) / kTilePixels; ++i)
+        tiles.push_back(block * (block_pixels_ / kTilePixels) + i);
+    return tiles;
+  }
+
+  void work_on_all() {
+    on_every_device([&](uint32_t d) {
+      try {
+        work(d);
+      } catch (...) {
+        list_->stop();  // the others do not wait for this one's blocks
+        throw;
+      }
+    });
+  }
+
+  // Pass after pass: all tiles that are open are brought to the next checkpoint and judged there.
+  void work_towards_goal() {
+    ErrorGoal goal(options_.error, uint32_t(options_.spp), pixels_ / kTilePixels);
+    while (!goal.open().empty()) {
+      expected_ = double(list_->done()) + goal.expected();
+      list_->ask(goal.open(), goal.checkpoint());
+      work_on_all();
+      if (list_->stopped()) {
+        result_.stopped = true;
+        return;
+      }
+      if (!floor_) floor_ = error_floor(film_->measure(goal.open(), tile_luminance));
+      goal.judge(film_->measure(goal.open(), [&](auto sums) { return tile_error(sums, *floor_); }));
+    }
+  }
+
+  // Paths of the next wave: a full one, until what is left of the time is shorter; 0 when it is up.
+  uint32_t wave_paths(uint32_t pool, double seconds_per_path) const {
+    if (options_.seconds <= 0 || !list_->all_begun()) return pool;
+    const double left = options_.seconds - since(start_);
+    if (left <= 0) return 0;
+    if (seconds_per_path == 0) return pool;
+    const double paths = kPlannedShare * left / seconds_per_path;
+    return paths < kSmallestWave * pool ? 0 : uint32_t(std::min(double(pool), paths));
+  }
+
   void work(uint32_t d) {
     const DriverCall guard;
     Wavefront& wave = *waves_[d];
     DeviceShare& share = result_.devices[d];
-    while (const auto unit = list_->take(d, wave.pool(), block_pixels_, kScrambles)) {
+    while (true) {
+      const uint32_t paths = wave_paths(wave.pool(), seconds_per_path_[d]);
+      if (paths == 0) list_->stop();
+      const auto unit = list_->take(d, paths, block_pixels_, kScrambles);
+      if (!unit) break;
       const auto taken = Clock::now();
       for (const auto& [block, owner] : unit->elsewhere) {
         const uint32_t first = block * block_pixels_;
         wave.film().write(first, waves_[owner]->film().read(first, pixels_in(block, 1)));
         ++share.moved_blocks;
       }
-      wave.trace(frame_, unit->first_block * block_pixels_, pixels_in(unit->first_block, unit->blocks),
-                 unit->first_sample, unit->samples);
+      const std::vector<uint32_t> tiles = tiles_of(*unit);
+      wave.trace(frame_, tiles, unit->first_sample, unit->samples);
       list_->finish(*unit);
-      share.busy_seconds += since(taken);
+      const double seconds = since(taken);
+      share.busy_seconds += seconds;
+      seconds_per_path_[d] = seconds / (double(tiles.size()) * kTilePixels * unit->samples);
       ++share.units;
       report();
     }
   }
 
   void report() {
-    const double done = list_->fraction(), elapsed = since(start_);
-    const bool over = options_.seconds > 0 && elapsed >= options_.seconds;
-    if (stop_requested() || over) list_->stop();
+    const double elapsed = since(start_);
+    if (stop_requested()) list_->stop();
     const std::lock_guard lock(mutex_);
     if (result_.first_sample_seconds == 0) result_.first_sample_seconds = elapsed;
-    if (progress_) progress_(options_.seconds > 0 ? std::max(done, std::min(1.0, elapsed / options_.seconds)) : done);
-  }
-
-  FilmSums gather(int width, int height) {
-    const size_t pixels = size_t(width) * size_t(height);
-    FilmSums film{width, height, std::vector<w_float4>(pixels * kScrambles, w_float4{0, 0, 0, 0}), {}, {}};
-    if (options_.aovs) {
-      film.aov.assign(pixels * 4, w_float4{0, 0, 0, 0});
-      film.ply.assign(pixels, W_NONE);
-    }
-    for (uint32_t block = 0; uint64_t(block) * block_pixels_ < pixels_; ++block)
-      if (const auto owner = list_->owner(block))
-        scatter(waves_[*owner]->film().read(block * block_pixels_, pixels_in(block, 1)), block * block_pixels_, film);
-    return film;
+    const double all = options_.error > 0 ? expected_ : double(list_->asked());
+    // What a goal takes is guessed anew in every pass; the bar does not go back.
+    fraction_ = std::max(fraction_, std::min(1.0, double(list_->done()) / all));
+    if (options_.seconds > 0) fraction_ = std::max(fraction_, std::min(1.0, elapsed / options_.seconds));
+    if (progress_) progress_(fraction_);
   }
 
   std::span<const RenderDevice> devices_;
   const RenderOptions& options_;
   const std::function<void(double)>& progress_;
+  bool aovs_;
   WFrame frame_;
-  uint32_t pixels_ = 0, block_pixels_ = 64;
+  uint32_t pixels_ = 0, block_pixels_ = kTilePixels;
+  std::vector<double> seconds_per_path_;  ///< of each device's last wave
+  std::optional<double> floor_;           ///< of errors, since the first checkpoint
+  double expected_ = 0, fraction_ = 0;    ///< samples that the goal will take; progress
   std::vector<std::unique_ptr<Wavefront>> waves_;
   std::unique_ptr<WorkList> list_;
+  std::unique_ptr<SharedFilm> film_;
   std::mutex mutex_;
   Rendered result_;
   Clock::time_point start_;
@@ -178,6 +239,11 @@ class Job {
 
 uint32_t pool_of(const DeviceTraits& traits, const IntegratorScene& integrator, const RenderOptions& options) {
   return options.pool ? options.pool : integrator.pool ? integrator.pool : traits.pool;
+}
+
+Features features_of(const DeviceTraits& traits, const World& world, const IntegratorScene& integrator,
+                     const RenderOptions& options) {
+  return analyse(world, integrator, options.aovs, traits).with(options.also);
 }
 
 Rendered render(std::span<const RenderDevice> devices, const World& world, const IntegratorScene& integrator,

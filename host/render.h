@@ -4,16 +4,18 @@
 #include <span>
 
 #include "host/film.h"
-#include "host/stats.h"
+#include "host/tile_error.h"
 #include "host/wavefront.h"
 
 namespace wale {
 
 struct RenderOptions {
-  int spp = 64;        ///< samples per pixel
-  double seconds = 0;  ///< > 0: stop after this time, whatever spp says
+  int spp = 64;        ///< samples per pixel; with a goal the most
+  double error = 0;    ///< > 0: goal; a tile stops when its relative error is this small (host/error_goal.h)
+  double seconds = 0;  ///< > 0: stop after this time, but not before every pixel has a sample
   uint32_t pool = 0;   ///< paths in flight; 0 = from the device
   bool aovs = false;
+  Features also;  ///< built in beside what the scene calls for
   bool count_cpu_time = false;  ///< stages by CPU time: see Wavefront::count_cpu_time
   RayRecord* record = nullptr;  ///< keeps the rays that are sent
   std::filesystem::path kernel_dir;
@@ -22,6 +24,10 @@ struct RenderOptions {
 
 /// Paths in flight on a device: what the options say, else the scene, else the device's table of traits.
 uint32_t pool_of(const DeviceTraits& traits, const IntegratorScene& integrator, const RenderOptions& options);
+
+/// What its programs are built for.
+Features features_of(const DeviceTraits& traits, const World& world, const IntegratorScene& integrator,
+                     const RenderOptions& options);
 
 /// A device and the scene on it.
 struct RenderDevice {
@@ -45,13 +51,13 @@ struct Rendered {
   double seconds = 0;               ///< from the first wave on
   double first_sample_seconds = 0;  ///< of them, until the first device's first wave was done
   double program_seconds = 0;       ///< wall time until all programs were built
-  int samples = 0;                  ///< per pixel, of the pixels that have most
+  Reached reached;                  ///< noise and samples of the picture's tiles
   bool stopped = false;             ///< by Ctrl-C or the time limit
 };
 
-/// Renders a world on devices that share its samples, each at its own pace. The picture depends on the scene, spp and
-/// seed alone: not on pool, threads or the number of (like) devices. Ctrl-C and the time limit stop between waves and
-/// keep what is there. When one device fails, all stop and its error is thrown, naming it.
+/// Renders a world on devices that share its samples, each at its own pace. The picture depends on the scene, spp, the
+/// error goal and the seed alone: not on pool, threads or the number of (like) devices. Ctrl-C and the time limit stop
+/// between waves and keep what is there; the last waves before the time limit are made as short as what is left of it. When one device fails, all stop and its error is thrown, naming it.
 Rendered render(std::span<const RenderDevice> devices, const World& world, const IntegratorScene& integrator,
                 const RenderOptions& options, const std::function<void(double fraction)>& progress = {});
 

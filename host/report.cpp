@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "geom/uv_grid.h"
-#include "host/stages.h"
 
 namespace wale {
 namespace {
@@ -131,40 +130,6 @@ std::string build_report_text(const World& world, const std::vector<TextileMeasu
   for (const auto& note : world.notes) out += fmt::format("note         {}\n", note);
   for (const auto& [step, seconds] : world.seconds) out += fmt::format("time         {}: {:.3f} s\n", step, seconds);
   return out;
-}
-
-std::string plan_text(const World& world, const SceneDevice& scene, const IntegratorScene& integrator,
-                      const Features& features) {
-  std::string out = "simulated\n";
-  const auto reasons = explain(world, integrator, features);
-  for (const auto& r : reasons)
-    if (r.used) out += fmt::format("  {:<20} {}\n", r.feature, r.because);
-  out += "left out\n";
-  for (const auto& r : reasons)
-    if (!r.used) out += fmt::format("  {:<20} {}\n", r.feature, r.because);
-  out += "programs\n";
-  for (const auto& s : wavefront_stages(features))
-    out += fmt::format("  {} {:<26} {}\n", s.used ? "+" : "-", s.file, s.because);
-  out += fmt::format("kernel options\n  {}\nbuffers\n", features.options());
-  uint64_t total = 0;
-  for (const auto& [name, bytes] : scene.bytes()) {
-    out += fmt::format("  {:<20} {:>14} bytes\n", name, bytes);
-    total += bytes;
-  }
-  return out + fmt::format("  {:<20} {:>14} bytes\n", "all", total);
-}
-
-std::string plan_json(const World& world, const SceneDevice& scene, const IntegratorScene& integrator,
-                      const Features& features) {
-  Json json{{"features", Json::array()},
-            {"programs", Json::array()},
-            {"options", features.options()},
-            {"buffers", scene.bytes()}};
-  for (const auto& r : explain(world, integrator, features))
-    json["features"].push_back({{"feature", r.feature}, {"used", r.used}, {"because", r.because}});
-  for (const auto& s : wavefront_stages(features))
-    json["programs"].push_back({{"file", s.file}, {"kernels", s.kernels}, {"used", s.used}, {"because", s.because}});
-  return json.dump(2) + "\n";
 }
 
 }  // namespace wale

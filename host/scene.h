@@ -124,6 +124,7 @@ struct ObjectScene {
 
 struct LightScene {
   enum class Kind { quad, sphere, mesh, environment } kind = Kind::quad;
+  std::string name;       ///< may be empty
   Rgb radiance{1, 1, 1};  ///< W/(m^2 sr), times intensity already applied
   dvec3 position{0, 0, 0}, look_at{0, 0, 0}, up{0, 1, 0};
   double width = 1, height = 1;  ///< quad
@@ -162,6 +163,9 @@ struct IntegratorScene {
   std::string ply_shadows = "attenuated";  ///< attenuated, opaque
   std::string light_choice = "power";      ///< power, uniform
   std::string math = "exact";              ///< exact, relaxed
+  std::string joints = "mitre";            ///< open, capsule, mitre
+  std::string normals = "rotation-minimising";  ///< flat, linear, rotation-minimising
+  std::string precision = "float";              ///< float, double
   int lanes = 0;                           ///< 0 = from the device; 1, 8, 16
   unsigned pool = 0;                       ///< paths in flight; 0 = from the device
   unsigned seed = 0;

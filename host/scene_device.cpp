@@ -41,18 +41,16 @@ std::vector<FabricInput> fabric_inputs(const World& world) {
   return inputs;
 }
 
-FabricDevice upload(const Device& device, const World& world, LocalStage stage) {
+FabricDevice upload(const Device& device, const World& world, LocalStage stage, Joints joints) {
   const DriverCall guard;
-  return upload_fabrics(device, fabric_inputs(world), world.origin, stage);
+  return upload_fabrics(device, fabric_inputs(world), world.origin, stage, false, joints);
 }
 
-SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage stage)
+SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage stage, Joints joints)
     : device_(device),
       stage_(stage),
       simt_(quantised_tree(device.traits(), stage)),
-      procedural_(
-          std::any_of(world.fabrics.begin(), world.fabrics.end(), [](const Fabric& f) { return f.procedural; })),
-      fabric_(upload(device, world, stage)) {
+      fabric_(upload(device, world, stage, joints)) {
   const TriangleTree tree = build_triangle_tree(corners_of(world.triangles));
   ply_materials_ = Buffer<WPlyMaterial>(device, world.ply_materials);
   fibre_details_ = Buffer<WFibreDetail>(device, world.fibres.details);
@@ -78,6 +76,7 @@ SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage st
   surface_materials_ = Buffer<WSurfaceMaterial>(device, world.surface_materials);
   lights_ = Buffer<WLight>(device, world.lights.lights);
   light_count_ = uint32_t(world.lights.lights.size());
+  samples_lights_ = world.lights.any();
   light_cdf_ = Buffer<float>(device, world.lights.cdf);
   light_triangles_ = Buffer<float>(device, world.lights.triangles);
   light_triangle_index_ = Buffer<int32_t>(device, world.lights.triangle_index);
@@ -88,7 +87,7 @@ SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage st
   events_.fill(device, 0u);
 }
 
-cl_uint SceneDevice::bind_scene(cl::Kernel& kernel, cl_uint first) const {
+cl_uint SceneDevice::bind_scene(cl::Kernel& kernel, cl_uint first, bool procedural) const {
   cl_uint i = first;
   kernel.setArg(i++, fabric_.tree.ray_nodes().cl());
   kernel.setArg(i++, fabric_.tree.node_cell.cl());
@@ -105,7 +104,7 @@ cl_uint SceneDevice::bind_scene(cl::Kernel& kernel, cl_uint first) const {
     kernel.setArg(i++, tri_quantised_.leaf_boxes().cl());
   }
   if (fabric_.tree.leaves.split()) i = fabric_.tree.leaves.bind_others(kernel, i);
-  if (procedural_) {
+  if (procedural) {
     kernel.setArg(i++, fabric_.lattice.lattice.cl());
     kernel.setArg(i++, fabric_.lattice.tiles.cl());
     kernel.setArg(i++, fabric_.lattice.patch_bits);
@@ -135,6 +134,12 @@ cl_uint SceneDevice::bind_lights(cl::Kernel& kernel, cl_uint first) const {
   kernel.setArg(i++, env_cdf_.cl());
   kernel.setArg(i++, light_count_);
   return i;
+}
+
+cl_uint SceneDevice::bind_ply_colors(cl::Kernel& kernel, cl_uint first) const {
+  kernel.setArg(first, ply_colors_.cl());
+  kernel.setArg(first + 1, cl_uint(ply_colors_.count()));
+  return first + 2;
 }
 
 std::map<std::string, uint64_t> SceneDevice::bytes() const {

@@ -13,15 +13,18 @@ std::vector<FabricInput> fabric_inputs(const World& world);
 /// A world on the device: buffers and the order in which kernels take them (stages/scene_args.clh, light_args.clh).
 class SceneDevice {
  public:
-  SceneDevice(const Device& device, const World& world, LocalStage stage = LocalStage::exact);
+  SceneDevice(const Device& device, const World& world, LocalStage stage = LocalStage::exact,
+              Joints joints = Joints::mitre);
 
   /// Definitions for the kernels that follow from how the world lies on the device, beside those of its features.
   std::string options() const { return fabric_.tree.leaves.split() ? " -DW_SPLIT_LEAVES" : ""; }
 
   /// Set the arguments of W_SCENE_PARAMS / W_LIGHT_PARAMS from `first` on; return the next free index. Kernels must be
-  /// built for the same features and with options().
-  cl_uint bind_scene(cl::Kernel& kernel, cl_uint first) const;
+  /// built for the same features and with options(); `procedural`: for procedural leaves, whether there are any or not.
+  cl_uint bind_scene(cl::Kernel& kernel, cl_uint first, bool procedural) const;
   cl_uint bind_lights(cl::Kernel& kernel, cl_uint first) const;
+  /// W_COLOR_PARAMS of the stages that shade curves.
+  cl_uint bind_ply_colors(cl::Kernel& kernel, cl_uint first) const;
 
   const cl::Buffer& frames() const { return fabric_.frames.cl(); }
   const cl::Buffer& ply_materials() const { return ply_materials_.cl(); }
@@ -29,7 +32,6 @@ class SceneDevice {
   const cl::Buffer& fibre_offsets() const { return fibre_offsets_.cl(); }
   const cl::Buffer& fibre_candidates() const { return fibre_candidates_.cl(); }
   const cl::Buffer& fibre_materials() const { return fibre_materials_.cl(); }
-  const cl::Buffer& ply_colors() const { return ply_colors_.cl(); }
   const cl::Buffer& triangles() const { return triangles_.cl(); }
   const cl::Buffer& spheres() const { return spheres_.cl(); }
   const cl::Buffer& surface_materials() const { return surface_materials_.cl(); }
@@ -37,6 +39,8 @@ class SceneDevice {
   /// Rare events, and the visits of programs that count them (kernels/shared/visits.h).
   std::vector<uint32_t> read_events() const { return events_.read(device_); }
 
+  /// Some light may be sampled; false where all of them were dropped.
+  bool samples_lights() const { return samples_lights_; }
   const FabricDevice& fabric() const { return fabric_; }
   /// Bytes by buffer name, for `wale plan` and --stats.
   std::map<std::string, uint64_t> bytes() const;
@@ -44,7 +48,7 @@ class SceneDevice {
  private:
   const Device& device_;
   LocalStage stage_;
-  bool simt_, procedural_;
+  bool simt_;
   FabricDevice fabric_;
   Buffer<WPlyMaterial> ply_materials_;
   Buffer<WFibreDetail> fibre_details_;
@@ -62,6 +66,7 @@ class SceneDevice {
   Buffer<WSurfaceMaterial> surface_materials_;
   Buffer<WLight> lights_;
   uint32_t light_count_ = 0;
+  bool samples_lights_ = false;
   Buffer<float> light_cdf_, light_triangles_;
   Buffer<int32_t> light_triangle_index_;
   WEnvironment environment_{};

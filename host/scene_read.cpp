@@ -103,12 +103,17 @@ IntegratorScene integrator_of(const JsonNode& node) {
   out.light_sampling = node["light_sampling"].text;
   out.ply_lobes = node["ply_lobes"].text;
   out.local_stage = node["local_stage"].text;
+  out.joints = node["joints"].text;
+  out.normals = node["normals"].text;
+  out.precision = node["precision"].text;
   out.ply_shadows = node["ply_shadows"].text;
   out.light_choice = node["light_choice"].text;
   out.math = node["math"].text;
   out.lanes = integer_of(node, "lanes");
   out.pool = static_cast<unsigned>(number_of(node, "pool"));
   out.seed = static_cast<unsigned>(number_of(node, "seed"));
+  if (out.precision == "double" && out.lanes > 1)
+    fail(node["lanes"], "integrator.lanes", "{} lanes are of floats; precision \"double\" has 0 or 1", out.lanes);
   return out;
 }
 
@@ -225,6 +230,7 @@ LightScene light_of(const JsonNode& node, size_t index) {
   const std::string path = fmt::format("lights.{}", index);
   const std::string& type = node["type"].text;
   LightScene light;
+  light.name = text_or(node, "name", fmt::format("light{}", index));
   if (node.has("radiance")) light.radiance = color_of(node["radiance"]);
   for (double& channel : light.radiance) channel *= number_of(node, "intensity");
   if (type == "quad") {

@@ -32,6 +32,10 @@ struct StageProgram {
   bool before_rays = false, can_wait = false;  ///< as Stage
 };
 
+/// Most programs that one render compiles for a device: one of each stage. All that differs between two scenes of the
+/// same structure is data, so that no stage is ever compiled a second time, whatever changes while a program runs.
+constexpr size_t kMostPrograms = 15;
+
 /// Programs of the stages that are used, in their order. `together`: a driver that compiles one kernel after the other
 /// is spared reading the same headers again and again; others compile each stage on a thread of its own.
 std::vector<StageProgram> programs_of(const std::vector<Stage>& stages, bool together);

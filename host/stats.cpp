@@ -55,6 +55,7 @@ std::string Stats::json() const {
   out["rays"]["all"] = rays_json(all);
   out["image"] = {{"width", width}, {"height", height}, {"samples_per_pixel", samples_per_pixel}};
   out["samples"] = samples;
+  add_sampling(out, sampling);
   out["rare_events"] = ordered_json(rare_events);
   out["total_seconds"] = total_seconds;
   out["first_sample_seconds"] = first_sample_seconds;

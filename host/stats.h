@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host/sampling_report.h"
 #include "host/stage_profile.h"
 
 namespace wale {
@@ -44,7 +45,8 @@ struct Stats {
   std::map<std::string, uint64_t> rare_events;  ///< "depth limit", ...
   int width = 0, height = 0;
   uint64_t samples = 0;  ///< paths
-  double samples_per_pixel = 0;
+  double samples_per_pixel = 0;  ///< mean
+  SamplingReport sampling;
   double total_seconds = 0;
   /// Wall seconds from the start of the program to the first finished wave, and what they are made of, in order.
   double first_sample_seconds = 0;

@@ -57,17 +57,18 @@ Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Featu
   ints(fibre_list_, features_.fibres ? pool_ : 0);
   ints(chunk_, (pool_ / kChunk + 1) * bins());
   ints(queue_counts_, kQueueCounts);
+  ints(tiles_, pool_ / kTilePixels);
   vec(aov_, features_.aovs ? size_t(pool_) * 4 : 0);
   build_programs();
 }
 
 cl_uint Wavefront::bind_path(cl::Kernel& k, cl_uint first) const {
   set_args(k, first, ray_o_.cl(), ray_l_.cl(), ray_d_.cl(), weight_.cl(), hit_.cl(), hit_uv_.cl(), radiance_.cl(),
-           shadow_o_.cl(), shadow_l_.cl(), shadow_d_.cl(), shadow_c_.cl(), mask_.cl());
-  return first + 12;
+           shadow_o_.cl(), shadow_l_.cl(), shadow_d_.cl(), shadow_c_.cl(), mask_.cl(), tiles_.cl());
+  return first + 13;
 }
 
-void Wavefront::bind_intersect(const char* name) { scene_.bind_scene(kernel(name), bind_path(kernel(name), 1)); }
+void Wavefront::bind_intersect(const char* name) { scene_.bind_scene(kernel(name), bind_path(kernel(name), 1), features_.procedural); }
 
 std::string Wavefront::options() const { return features_.options() + scene_.options(); }
 
@@ -117,23 +118,23 @@ void Wavefront::build_programs() {
   set_args(miss, next, aov_.cl(), miss_list_.cl(), queue_counts_.cl(), kHits + 2);
   if (kernels_.contains("shade_ply")) {
     auto& k = kernel("shade_ply");
-    next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1)));
-    set_args(k, next, scene_.frames(), scene_.ply_materials());
-    next += 2;
+    next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1), features_.procedural));
+    set_args(k, next, scene_.frames(), uint32_t(features_.normals), scene_.ply_materials());
+    next += 3;
     if (features_.detail) {
       set_args(k, next, scene_.fibre_details(), scene_.fibre_offsets(), scene_.fibre_candidates());
       set_args(k, next + 3, pixel_width(camera_));
       next += 4;
     }
-    if (features_.ply_colors) set_args(k, next++, scene_.ply_colors());
+    if (features_.ply_colors) next = scene_.bind_ply_colors(k, next);
     set_args(k, next, aov_.cl(), ply_list_.cl(), queue_counts_.cl(), kHits);
   }
   if (kernels_.contains("shade_fibre")) {
     auto& k = kernel("shade_fibre");
-    next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1)));
-    set_args(k, next, scene_.frames(), scene_.fibre_materials());
-    next += 2;
-    if (features_.ply_colors) set_args(k, next++, scene_.ply_colors());
+    next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1), features_.procedural));
+    set_args(k, next, scene_.frames(), uint32_t(features_.normals), scene_.fibre_materials());
+    next += 3;
+    if (features_.ply_colors) next = scene_.bind_ply_colors(k, next);
     set_args(k, next, aov_.cl(), fibre_list_.cl(), queue_counts_.cl(), kHits + 3);
   }
   if (kernels_.contains("shade_surface")) {
@@ -144,11 +145,11 @@ void Wavefront::build_programs() {
   }
   if (features_.lights) {
     auto& k = kernel("connect");
-    next = scene_.bind_scene(k, path(k, 1));
+    next = scene_.bind_scene(k, path(k, 1), features_.procedural);
     set_args(k, next, shadow_list_.cl(), queue_counts_.cl());
   }
-  kernel("accumulate").setArg(1, camera_);
-  if (features_.aovs) kernel("accumulate_aov").setArg(1, camera_);
+  set_args(kernel("accumulate"), 1, camera_, tiles_.cl());
+  if (features_.aovs) set_args(kernel("accumulate_aov"), 1, camera_, tiles_.cl());
 }
 
 void Wavefront::launch(const std::string& name, size_t items, bool camera_rays) {
@@ -191,13 +192,14 @@ void Wavefront::compact(const Buffer<uint32_t>& list, uint32_t count_index, uint
   launch("compact_scatter", chunks);
 }
 
-void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint32_t first_sample, uint32_t samples) {
-  frame.first_pixel = first_pixel;
+void Wavefront::trace(WFrame frame, const std::vector<uint32_t>& tiles, uint32_t first_sample, uint32_t samples) {
+  const uint32_t pixels = uint32_t(tiles.size()) * kTilePixels;
   frame.samples_before = first_sample;
   frame.samples_in_wave = samples;
   frame.paths = pixels * samples;
   take_packets();
   set_frame(frame);
+  tiles_.write(device_, tiles);
   const bool recording = record_ && waves_ % record_->every == 0;
   ++waves_;
 
@@ -224,7 +226,7 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
       }
     const uint32_t shaded = kShaded[side];
     compact(live, count_index, shaded, bound, active_[1 - side], shadow_list_, spare_list_);
-    if (features_.lights) {
+    if (features_.lights && scene_.samples_lights()) {
       if (recording) keep_rays(frame, RayKind::shadow, shadow_list_, shaded + 1, depth);
       launch_connect(shaded + 1, depth, bound);
     }
@@ -255,14 +257,13 @@ void Wavefront::trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint3
     }
     side = 1 - side;
   }
-  for (const auto& p : film_.pieces(first_pixel, pixels)) {
-    set_args(kernel("accumulate"), 2, p.in_run, p.in_band, p.count, radiance_.cl(), film_.radiance(p.band),
-             scene_.events());
-    launch("accumulate", p.count);
+  for (const size_t band : film_.bands_of(tiles)) {
+    const auto [band_first, band_pixels] = film_.pixels_of(band);
+    set_args(kernel("accumulate"), 3, band_first, band_pixels, radiance_.cl(), film_.radiance(band), scene_.events());
+    launch("accumulate", pixels);
     if (!features_.aovs) continue;
-    set_args(kernel("accumulate_aov"), 2, p.in_run, p.in_band, p.count, aov_.cl(), film_.aov(p.band),
-             film_.ply(p.band));
-    launch("accumulate_aov", p.count);
+    set_args(kernel("accumulate_aov"), 3, band_first, band_pixels, aov_.cl(), film_.aov(band), film_.ply(band));
+    launch("accumulate_aov", pixels);
   }
   device_.queue().finish();
   counts_.add_wave(frame.paths);

@@ -17,8 +17,8 @@
 
 namespace wale {
 
-/// Film and path state on the device, and the kernels of one set of features. One wave traces a block of pixels times a
-/// run of samples to the end of every path: generate, then per bounce intersect, compact, miss, shade, compact,
+/// Film and path state on the device, and the kernels of one set of features. One wave traces any tiles of 8 x 8 pixels
+/// times a run of samples to the end of every path: generate, then per bounce intersect, compact, miss, shade, compact,
 /// connect, then accumulate. Queue lengths stay on the device; the host reads them one bounce late to size its
 /// launches.
 class Wavefront {
@@ -28,9 +28,9 @@ class Wavefront {
 
   uint32_t pool() const { return pool_; }
 
-  /// Traces `samples` samples from `first_sample` of pixels [first_pixel, first_pixel + pixels) and adds them to the
-  /// film; pixel numbers run along 8 x 8 tiles (padded_pixels), those outside the picture are skipped.
-  void trace(WFrame frame, uint32_t first_pixel, uint32_t pixels, uint32_t first_sample, uint32_t samples);
+  /// Traces `samples` samples from `first_sample` of the pixels of these tiles and adds them to the film; pixels of the
+  /// border tiles that lie outside the picture are skipped. At most the pool's paths, but one tile at least.
+  void trace(WFrame frame, const std::vector<uint32_t>& tiles, uint32_t first_sample, uint32_t samples);
 
   /// Waits for every launch and counts the CPU seconds of all threads over the compute units as its time, which other
   /// programs on the machine disturb less than the clock; for CPU devices.
@@ -98,7 +98,7 @@ class Wavefront {
   Buffer<w_float4> ray_o_, ray_l_, ray_d_, weight_, hit_, radiance_, shadow_o_, shadow_l_, shadow_d_, shadow_c_;
   Buffer<std::array<float, 2>> hit_uv_;
   Buffer<uint32_t> mask_, active_[2], ply_list_, surface_list_, miss_list_, fibre_list_, shadow_list_, spare_list_,
-      chunk_, queue_counts_;
+      chunk_, queue_counts_, tiles_;
   Buffer<w_float4> aov_;
   FilmDevice film_;
 };

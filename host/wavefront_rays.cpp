@@ -23,6 +23,8 @@ void Wavefront::keep_rays(const WFrame& frame, RayKind kind, const Buffer<uint32
   batch.kind = kind;
   batch.frame = frame;
   batch.depth = depth;
+  batch.tiles = tiles_.read(device_);
+  batch.tiles.resize(frame.paths / frame.samples_in_wave / kTilePixels);
   batch.slots = list.read(device_);
   batch.slots.resize(queue_counts_.read(device_)[count_index]);
   if (batch.slots.empty()) return;
@@ -49,6 +51,7 @@ void Wavefront::load(const RayBatch& batch) {
   scatter(shadow ? shadow_d_ : ray_d_, batch.d);
   // One kind of light for every ray: what arrives is 1 where nothing is in the way.
   if (shadow) scatter(shadow_c_, std::vector<w_float4>(batch.slots.size(), w_float4{1, 1, 1, 0}));
+  tiles_.write(device_, batch.tiles);
   (shadow ? shadow_list_ : active_[0]).write(device_, batch.slots);
   queue_counts_.write(device_, {uint32_t(batch.slots.size())});
   set_frame(batch.frame);

@@ -1,56 +1,78 @@
 #include "host/work_list.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace wale {
 
-WorkList::WorkList(uint32_t blocks, uint32_t samples, uint32_t devices)
-    : blocks_(blocks), samples_(samples), devices_(devices) {}
+WorkList::WorkList(uint32_t blocks, uint32_t samples, uint32_t devices, bool in_a_hurry)
+    : blocks_(blocks), devices_(devices), in_a_hurry_(in_a_hurry) {
+  std::vector<uint32_t> all(blocks);
+  std::iota(all.begin(), all.end(), 0u);
+  ask(std::move(all), samples);
+}
 
-// First block with the fewest samples that nobody is tracing; its own device's before those of nobody and of others.
-std::optional<uint32_t> WorkList::farthest_behind(uint32_t device) const {
-  std::optional<uint32_t> best;
-  const auto rank = [&](const Block& b) {
-    return std::pair(b.done, b.owner == device ? 0 : b.owner == kNobody ? 1 : 2);
-  };
-  for (uint32_t i = 0; i < blocks_.size(); ++i) {
-    const Block& b = blocks_[i];
-    if (b.busy || b.done == samples_) continue;
-    if (!best || rank(b) < rank(blocks_[*best])) best = i;
+void WorkList::ask(std::vector<uint32_t> blocks, uint32_t samples) {
+  const std::lock_guard lock(mutex_);
+  samples_ = samples;
+  open_ = std::move(blocks);
+  std::erase_if(open_, [&](uint32_t b) { return blocks_[b].done >= samples; });
+  for (const uint32_t b : open_) asked_ += samples - blocks_[b].done;
+}
+
+// Place in the open blocks of the first one with the fewest samples that nobody is tracing; the device's own before
+// those of nobody and of others.
+std::optional<size_t> WorkList::farthest_behind(uint32_t device) const {
+  std::optional<size_t> best;
+  std::pair<uint32_t, int> least;
+  for (size_t i = 0; i < open_.size(); ++i) {
+    const Block& b = blocks_[open_[i]];
+    if (b.busy) continue;
+    const std::pair rank(b.done, b.owner == device ? 0 : b.owner == kNobody ? 1 : 2);
+    if (best && rank >= least) continue;
+    best = i;
+    least = rank;
   }
   return best;
 }
 
 std::optional<WorkUnit> WorkList::take(uint32_t device, uint32_t paths, uint32_t block_pixels, uint32_t even) {
   std::unique_lock lock(mutex_);
-  std::optional<uint32_t> first;
-  while (!stopped_ && done_ < uint64_t(samples_) * blocks_.size()) {
+  std::optional<size_t> first;
+  while (!stopped_ && !open_.empty()) {
     first = farthest_behind(device);
     if (first) break;
     changed_.wait(lock);
   }
   if (!first) return {};
 
+  const Block like = blocks_[open_[*first]];
   WorkUnit unit;
-  unit.first_block = *first;
-  unit.first_sample = blocks_[*first].done;
-  const uint32_t left = samples_ - unit.first_sample, block_paths = std::max(1u, paths / block_pixels);
-  unit.samples = std::min({left, even, block_paths});
+  unit.first_sample = like.done;
+  const uint32_t left = samples_ - like.done, block_paths = std::max(1u, paths / block_pixels);
+  const uint32_t step = in_a_hurry_ && like.done == 0 ? 1 : even - like.done % even;
+  unit.samples = std::min({left, step, block_paths});
   // No device takes more than its share at once: the others would have to wait for it.
-  const uint32_t share = uint32_t((blocks_.size() + devices_ - 1) / devices_);
+  const uint32_t share = uint32_t((open_.size() + devices_ - 1) / devices_);
   const uint32_t most = std::min(share, std::max(1u, block_paths / unit.samples));
-  const uint32_t owner = blocks_[*first].owner;
-  for (uint32_t i = *first; i < blocks_.size() && unit.blocks < most; ++i) {
-    Block& b = blocks_[i];
-    if (b.busy || b.done != unit.first_sample || b.owner != owner) break;
+  for (size_t i = *first; i < open_.size() && unit.blocks.size() < most; ++i) {
+    Block& b = blocks_[open_[i]];
+    if (b.busy || b.done != like.done || b.owner != like.owner) continue;
     b.busy = true;
-    if (b.owner != device && b.owner != kNobody) unit.elsewhere.emplace_back(i, b.owner);
+    if (b.owner != device && b.owner != kNobody) unit.elsewhere.emplace_back(open_[i], b.owner);
     b.owner = device;
-    ++unit.blocks;
+    unit.blocks.push_back(open_[i]);
   }
-  // What is left of the wave goes to more samples; with several devices in steps that still let them share the rest.
-  const uint32_t fit = block_paths / unit.blocks / even * even;
-  const uint32_t fair = devices_ > 1 ? left / 4 / even * even : left;
+  // The last blocks of a round must not get far ahead when the end may come at any time.
+  if (in_a_hurry_ && unit.blocks.size() < share) return unit;
+  // What is left of the wave goes to more samples, up to a whole round of the scrambles; with several devices in steps
+  // that still let them share the rest.
+  const auto whole = [&](uint32_t samples) {
+    const uint32_t end = (like.done + samples) / even * even;
+    return end > like.done ? end - like.done : 0;
+  };
+  const uint32_t fit = whole(block_paths / uint32_t(unit.blocks.size()));
+  const uint32_t fair = devices_ > 1 ? whole(left / 4) : left;
   unit.samples = std::max(unit.samples, std::min({left, fit, fair}));
   return unit;
 }
@@ -58,11 +80,13 @@ std::optional<WorkUnit> WorkList::take(uint32_t device, uint32_t paths, uint32_t
 void WorkList::finish(const WorkUnit& unit) {
   {
     const std::lock_guard lock(mutex_);
-    for (uint32_t i = unit.first_block; i < unit.first_block + unit.blocks; ++i) {
+    for (const uint32_t i : unit.blocks) {
       blocks_[i].done += unit.samples;
       blocks_[i].busy = false;
     }
-    done_ += uint64_t(unit.blocks) * unit.samples;
+    if (unit.first_sample + unit.samples == samples_)
+      std::erase_if(open_, [&](uint32_t b) { return blocks_[b].done == samples_; });
+    done_ += uint64_t(unit.blocks.size()) * unit.samples;
   }
   changed_.notify_all();
 }
@@ -75,16 +99,29 @@ void WorkList::stop() {
   changed_.notify_all();
 }
 
-double WorkList::fraction() const {
+bool WorkList::stopped() const {
   const std::lock_guard lock(mutex_);
-  return double(done_) / (double(samples_) * double(blocks_.size()));
+  return stopped_;
 }
 
-uint32_t WorkList::most_samples() const {
+uint64_t WorkList::done() const {
   const std::lock_guard lock(mutex_);
-  uint32_t most = 0;
-  for (const Block& b : blocks_) most = std::max(most, b.done);
-  return most;
+  return done_;
+}
+
+uint64_t WorkList::asked() const {
+  const std::lock_guard lock(mutex_);
+  return asked_;
+}
+
+bool WorkList::all_begun() const {
+  const std::lock_guard lock(mutex_);
+  return std::all_of(blocks_.begin(), blocks_.end(), [](const Block& b) { return b.busy || b.done > 0; });
+}
+
+uint32_t WorkList::samples(uint32_t block) const {
+  const std::lock_guard lock(mutex_);
+  return blocks_[block].done;
 }
 
 std::optional<uint32_t> WorkList::owner(uint32_t block) const {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geom/error.h"
+#include "host/analysis.h"
 #include "host/knit_fabrics.h"
 #include "host/materials.h"
 #include "host/placement.h"
@@ -143,9 +144,13 @@ class Builder {
       const int material = add_material(scene_.materials.at(size_t(object.material)).surface);
       if (object.kind == ObjectScene::Kind::sphere) {
         spheres_.push_back({object.center, object.radius, material, -1});
+        world_.sphere_names.push_back('"' + object.name + '"');
         bounds_.add(object.center - object.radius);
         bounds_.add(object.center + object.radius);
-      } else if (object.kind == ObjectScene::Kind::ground) {
+        continue;
+      }
+      world_.triangle_names.push_back('"' + object.name + '"');
+      if (object.kind == ObjectScene::Kind::ground) {
         const dvec3 up = glm::normalize(object.up);
         const dvec3 side = std::abs(up.x) < 0.9 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
         const dvec3 u = glm::normalize(glm::cross(side, up)), v = glm::cross(up, u);
@@ -180,9 +185,7 @@ class Builder {
 
   void add_lights() {
     LightTableBuilder tables;
-    for (const auto& light : scene_.lights) {
-      const bool black = light.file.empty() && light.radiance == Rgb{0, 0, 0};
-      if (black) continue;  // gives nothing: not simulated
+    for (const auto& light : scene_.lights) {  // also black ones: what they are made of is in the way of light
       switch (light.kind) {
         case LightScene::Kind::sphere:
           add_sphere_light(light, tables);
@@ -208,6 +211,10 @@ class Builder {
     return scene_.integrator.light_choice == "uniform" ? LightChoice::uniform : LightChoice::power;
   }
 
+  void name_light(const LightScene& light, const char* kind) {
+    world_.light_names.push_back(light.name.empty() ? kind : fmt::format("\"{}\" ({})", light.name, kind));
+  }
+
   void add_sphere_light(const LightScene& light, LightTableBuilder& tables) {
     const int material = add_emitter(light.radiance, false);
     const dvec3 c = light.position - world_.origin;
@@ -215,12 +222,13 @@ class Builder {
         tables.add_sphere(rgb3(light.radiance), {float(c.x), float(c.y), float(c.z)}, float(light.radius));
     world_.surface_materials[size_t(material)].light = index;
     spheres_.push_back({light.position, light.radius, material, index});
-    world_.light_names.push_back("sphere");
+    name_light(light, "sphere");
+    world_.sphere_names.push_back(world_.light_names.back());
   }
 
   // Registers triangles [first, end) as one light.
   void register_triangles(size_t first, const Rgb& radiance, bool one_sided, int material, LightTableBuilder& tables,
-                          const std::string& name) {
+                          const LightScene& light, const char* kind) {
     std::vector<LightTriangle> corners;
     std::vector<int32_t> numbers;
     for (size_t i = first; i < triangles_.size(); ++i) {
@@ -231,7 +239,8 @@ class Builder {
       numbers.push_back(int32_t(i));
     }
     world_.surface_materials[size_t(material)].light = tables.add_mesh(rgb3(radiance), corners, numbers, one_sided);
-    world_.light_names.push_back(name);
+    name_light(light, kind);
+    world_.triangle_names.push_back(world_.light_names.back());
   }
 
   void add_quad_light(const LightScene& light, LightTableBuilder& tables) {
@@ -240,7 +249,7 @@ class Builder {
     const size_t first = triangles_.size();
     // right x up points against forward: the order below makes the front face look_at.
     add_quad(light.position, frame.up * (0.5 * light.height), frame.right * (0.5 * light.width), material);
-    register_triangles(first, light.radiance, !light.two_sided, material, tables, "quad");
+    register_triangles(first, light.radiance, !light.two_sided, material, tables, light, "quad");
   }
 
   void add_mesh_light(const LightScene& light, LightTableBuilder& tables) {
@@ -249,7 +258,7 @@ class Builder {
     const int material = add_emitter(light.radiance, false);
     const size_t first = triangles_.size();
     add_triangles(mesh, material);
-    register_triangles(first, light.radiance, false, material, tables, "mesh");
+    register_triangles(first, light.radiance, false, material, tables, light, "mesh");
   }
 
   // Photographed skies are resampled with filters that ring: a few texels dip below zero, where no light can be.
@@ -295,7 +304,7 @@ class Builder {
       mean = {a, a, a};
     }
     env.light = tables.add_environment(rgb3(mean), float(bounds_.radius()));
-    world_.light_names.push_back("environment");
+    name_light(light, "environment");
   }
 
   WCamera camera() const {
@@ -326,8 +335,10 @@ class Builder {
 
 }  // namespace
 
-World build_world(const Scene& scene, const Loaders& loaders, const BuildProgress& progress) {
-  return Builder(scene, loaders, progress).build();
+World build_world(const Scene& scene, const Loaders& loaders, const BuildProgress& progress, bool drop) {
+  World world = Builder(scene, loaders, progress).build();
+  if (drop) drop_what_cannot_matter(world);
+  return world;
 }
 
 }  // namespace wale

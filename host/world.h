@@ -19,6 +19,11 @@ struct Loaders {
   std::function<Image(const std::filesystem::path&)> image;
 };
 
+/// An effect that a scene has and that is left out because it cannot matter (host/analysis.h).
+struct Dropped {
+  std::string what, because;
+};
+
 /// A scene made concrete on the host: knitted fabrics, triangles, lights and materials, ready to be uploaded. Positions
 /// of fabrics are in double; everything in float is relative to `origin`.
 struct World {
@@ -41,6 +46,9 @@ struct World {
   WCamera camera{};
   std::vector<std::string> notes;         ///< what was mended in the input, one line each
   std::vector<std::string> light_names;   ///< per light, for `wale plan`
+  std::vector<std::string> triangle_names, sphere_names;  ///< of objects and lights of that shape
+  std::vector<Dropped> dropped;           ///< what was left out because it cannot matter
+  bool first_hits_only = false;           ///< paths gather nothing after their first hit
   std::map<std::string, double> seconds;  ///< per step of the build
 
   size_t triangle_count() const { return triangles.size() / kTriangleWords; }
@@ -49,8 +57,9 @@ struct World {
 
 using BuildProgress = std::function<void(const std::string& step, double fraction)>;
 
-/// Builds everything that does not need a device. Throws user errors that name the object.
-World build_world(const Scene& scene, const Loaders& loaders, const BuildProgress& progress = {});
+/// Builds everything that does not need a device. Throws user errors that name the object. `drop`: leave out what
+/// cannot matter (host/analysis.h).
+World build_world(const Scene& scene, const Loaders& loaders, const BuildProgress& progress = {}, bool drop = true);
 
 /// The mesh that a scene names, generated or read, before its transform.
 BaseMesh load_mesh(const MeshSource& source, const Loaders& loaders);

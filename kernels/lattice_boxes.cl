@@ -9,12 +9,12 @@ W_INLINE void go_on_straight(Points* p, uint to, uint at, uint from) {
   p->z[to] = p->z[at] + (p->z[at] - p->z[from]);
 }
 
-/* leaves: leaf numbers without W_LEAF_PROCEDURAL. boxes: lo x,y,z, hi x,y,z. Counts the joints inside the yarns that
+/* leaves: leaf numbers without W_LEAF_PROCEDURAL. boxes: lo x,y,z, hi x,y,z. Counts the mitres inside the yarns that
    would need a square cut and a sphere, which procedural leaves have at open ends only. A leaf knows one point beyond
    each of its ends: the edges there are taken to go straight on, and their other ends are looked at by the leaves that
    hold them. */
 __kernel void lattice_boxes(__global const uint* leaves, __global const float* lattice, __global const uint* tiles,
-                            uint patch_bits, __global float* boxes, __global uint* tight, uint count) {
+                            uint patch_bits, uint joints, __global float* boxes, __global uint* tight, uint count) {
   const uint i = get_global_id(0);
   if (i >= count) return;
   __global const uint* patch = tiles + (leaves[i] & ((1u << patch_bits) - 1u)) * W_PATCH_WORDS;
@@ -31,9 +31,10 @@ __kernel void lattice_boxes(__global const uint* leaves, __global const float* l
     go_on_straight(&point, p + last + n, p + last, p + last - n);
   }
   uint cuts;
-  const Bounds box = bound_joints(&point, n, lanes, w_all(as_float(patch[W_LEAF_RADIUS])), open, &cuts);
+  const Bounds box = bound_joints(&point, n, lanes, w_all(as_float(patch[W_LEAF_RADIUS])), open, joints,
+                                  &cuts);
   const uint ply_bits = (1u << n) - 1u, ends = (open & 1u ? ply_bits : 0u) | (open & 2u ? ply_bits << lanes : 0u);
-  if (cuts & ~ends) atomic_add(tight, popcount(cuts & ~ends));
+  if (joints == W_JOINTS_MITRE && (cuts & ~ends)) atomic_add(tight, popcount(cuts & ~ends));
   vstore3(box.lo, 2 * (size_t)i, boxes);
   vstore3(box.hi, 2 * (size_t)i + 1, boxes);
 }

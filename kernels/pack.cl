@@ -23,12 +23,13 @@ W_INLINE float3 vertex(const Ply* ply, int i) {
 }
 
 /* run: number of the leaf in its buffer (16-byte units), first vertex of the run's ply 0, vertices per ply, 1 if the run
-   has ghost ends. The host has written the leaf's header but for CUTS and SPHERES. Returns the leaf's box. What happens
+   has ghost ends. joints: W_JOINTS_*. The host has written the leaf's header but for CUTS, SPHERES and W_LAYOUT_CAPSULES. Returns the leaf's box. What happens
    at a joint follows from the vertices two before to two after it only, so that every leaf that meets the joint decides
    alike. */
-W_INLINE Bounds pack_leaf(uint4 run, __global const float* positions, __global uint* leaves) {
+W_INLINE Bounds pack_leaf(uint4 run, __global const float* positions, uint joints, __global uint* leaves) {
   __global uint* leaf = leaves + ((size_t)run.x << 2);
-  const uint layout = leaf[W_LEAF_LAYOUT], n = layout & 255u, lanes = (layout >> 8) & 255u, stride = layout >> 16;
+  const uint layout = leaf[W_LEAF_LAYOUT], n = layout & 255u, lanes = (layout >> 8) & 255u;
+  const uint stride = W_LAYOUT_STRIDE(layout);
   const int intervals = (int)(lanes / n), first = (int)(leaf[W_LEAF_SEGMENT] - run.y);
   const w_vf r = w_all(as_float(leaf[W_LEAF_RADIUS]));
   Points point;
@@ -57,11 +58,13 @@ W_INLINE Bounds pack_leaf(uint4 run, __global const float* positions, __global u
   uint cut_joints;
   const int open_start = !run.w && first == 0, open_end = !run.w && first + intervals == (int)run.z - 1;
   const Bounds box =
-      bound_joints(&point, n, lanes, r, (open_start ? 1u : 0u) | (open_end ? 2u : 0u), &cut_joints);
+      bound_joints(&point, n, lanes, r, (open_start ? 1u : 0u) | (open_end ? 2u : 0u), joints, &cut_joints);
   const uint segments = (1u << lanes) - 1u;
+  if (joints == W_JOINTS_CAPSULE) leaf[W_LEAF_LAYOUT] = layout | W_LAYOUT_CAPSULES;
   leaf[W_LEAF_CUTS] = (cut_joints & segments) | (cut_joints >> n & segments) << 16;
-  leaf[W_LEAF_SPHERES] =
-      (cut_joints & segments) | (open_end ? cut_joints >> lanes << (16 + lanes - n) : 0u);
+  leaf[W_LEAF_SPHERES] = joints == W_JOINTS_OPEN
+                             ? 0u
+                             : (cut_joints & segments) | (open_end ? cut_joints >> lanes << (16 + lanes - n) : 0u);
   return box;
 }
 
@@ -74,10 +77,10 @@ W_INLINE uint4 run_in_buffer(__global const uint4* runs, uint i, uint base) {
 
 /* Runs first .. first + count - 1 are those of one buffer of leaves. boxes: lo x,y,z, hi x,y,z. */
 __kernel void pack_leaves(__global const uint4* runs, __global const float* positions, __global uint* leaves, uint base,
-                          uint first, uint count, __global float* boxes) {
+                          uint first, uint count, uint joints, __global float* boxes) {
   const uint i = first + get_global_id(0);
   if (i - first >= count) return;
-  const Bounds box = pack_leaf(run_in_buffer(runs, i, base), positions, leaves);
+  const Bounds box = pack_leaf(run_in_buffer(runs, i, base), positions, joints, leaves);
   vstore3(box.lo, 2 * (size_t)i, boxes);
   vstore3(box.hi, 2 * (size_t)i + 1, boxes);
 }
@@ -95,11 +98,11 @@ __kernel void place_leaves(__global const uint* nodes, __global uint* leaves, ui
 
 /* Packs again and writes each leaf's box where the tree holds it. Widened as by build_wide_tree. */
 __kernel void refit_leaves(__global const uint4* runs, __global const float* positions, __global uint* leaves,
-                           uint base, uint first, uint count, __global float* nodes) {
+                           uint base, uint first, uint count, uint joints, __global float* nodes) {
   const uint i = first + get_global_id(0);
   if (i - first >= count) return;
   const uint4 run = run_in_buffer(runs, i, base);
-  const Bounds box = pack_leaf(run, positions, leaves);
+  const Bounds box = pack_leaf(run, positions, joints, leaves);
   const float3 lo = box.lo - (fabs(box.lo) * 4.8e-7f + 1e-30f), hi = box.hi + (fabs(box.hi) * 4.8e-7f + 1e-30f);
   const uint place = leaves[((size_t)run.x << 2) + W_LEAF_PLACE];
   __global float* f = nodes + (size_t)(place / W_NODE_WIDTH) * W_NODE_WORDS + place % W_NODE_WIDTH;

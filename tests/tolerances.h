@@ -40,12 +40,22 @@ constexpr double kLessThanNoise = 1;       // the promise itself
 constexpr double kPixelsOfAnotherScale = 0.01;
 constexpr double kGrazingShare = 1e-3;     // rays within 1e-3 of a silhouette, |h| > 0.999, that float may decide otherwise
 
+// Levels of accuracy, in ply radii: hits against the curved ply (the seam's overlap, and float coordinates), and points
+// that are kept in 16 bits.
+constexpr double kJointSurface = 1e-4;
+
 // Statistics: a family of tests fails by chance once in a hundred times, and the seeds are fixed.
 constexpr double kFamilyP = 0.01;
 
 // Of a tile's standard error, between drivers and with the same seed: as if 16 of its 512 paths had gone elsewhere. One
 // such path moves its pixel by half a standard error and the tile's mean by 1/16 of one; 16 at random by 4/16.
 constexpr double kShareOfNoise = 0.25;
+
+// Rendering to an error goal.
+constexpr double kErrorOfError = 0.03;  // mean over 300 tiles of 448 degrees of freedom, and the skew of 400 samples
+constexpr double kFactorOfGoal = 1.5;   // the promise: actual error over the one asked for
+constexpr double kBiasShare = 0.005;    // four standard errors of the mean of 24 pictures of 576 pixels, and the reference's
+constexpr double kVarianceShare = 0.1;  // variance channel against the spread of 24 pictures of 576 pixels
 
 // Seconds of processor time that a reader may take for any file of up to 64 KiB: what a user does not notice.
 constexpr double kReaderSeconds = 1;

@@ -70,6 +70,7 @@ int run_bench(const BenchArgs& args, const Loaders& loaders) {
   MeasureOptions options;
   options.repeats = args.repeats;
   options.kernel_dir = args.kernel_dir;
+  if (args.every_feature) options.also = Features::everything();
   for (const Workload& workload : workloads) {
     Progress bar(workload.name, args.quiet);
     report.fabrics.push_back(

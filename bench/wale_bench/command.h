@@ -18,6 +18,7 @@ struct BenchArgs {
   std::filesystem::path json, csv, kernel_dir;
   std::filesystem::path reference;  ///< writes the frozen workload's picture there instead
   bool quiet = false;
+  bool every_feature = false;  ///< programs with everything built in
 };
 
 /// Measures, prints a table and writes what was asked for. Throws a device error, after everything is written, when

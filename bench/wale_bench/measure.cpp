@@ -59,7 +59,8 @@ FabricResult measure(const Device& device, const Workload& workload, const Loade
   RenderOptions render_options;
   render_options.spp = integrator.spp;
   render_options.kernel_dir = options.kernel_dir;
-  const Features features = analyse(world, integrator, false, device.traits());
+  render_options.also = options.also;
+  const Features features = features_of(device.traits(), world, integrator, render_options);
 
   RayRecord record;
   render_options.record = &record;

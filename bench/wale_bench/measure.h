@@ -12,6 +12,7 @@ struct MeasureOptions {
   int repeats = 5;
   size_t checked_rays = 128;  ///< of each row, against the oracle
   std::filesystem::path kernel_dir;
+  Features also;  ///< as in RenderOptions
 };
 
 /// What one cloth gave on one device. Vectors hold one value for each repeat.

@@ -20,6 +20,11 @@ inline void add_bench_options(CLI::App& command, BenchArgs& args) {
   command.add_option("--csv", args.csv, "write the rows of rays as CSV (- for the terminal)");
   command.add_option("--kernel-dir", args.kernel_dir, "read kernels from this folder instead of the built-in ones");
   command.add_option("--write-reference", args.reference, "write the reference picture of the frozen workload");
+  command
+      .add_option_function<std::string>(
+          "--features", [&args](const std::string& word) { args.every_feature = word == "all"; },
+          "what is built into the kernels: needed (what a scene calls for, the default) or all")
+      ->check(CLI::IsMember({"needed", "all"}));
   command.add_flag("--quiet", args.quiet, "no progress");
 }
 

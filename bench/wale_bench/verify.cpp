@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "host/film_device.h"
 #include "host/scene_device.h"
 #include "sampling/dimensions.clh"
 #include "tests/kernels/brute_force.h"
@@ -79,8 +80,11 @@ std::vector<CheckedRay> Oracle::sample(const RayBatch& batch, const std::vector<
     c.shadow = batch.kind == RayKind::shadow;
     if (c.shadow) c.ray.tmax = d.w;
     const uint32_t slot = batch.slots[i], samples = batch.frame.samples_in_wave;
-    c.ray.key = w_ray_key(batch.frame.first_pixel + slot / samples, batch.frame.samples_before + slot % samples,
-                          batch.depth, c.shadow ? W_RAY_SHADOW : W_RAY_PATH, batch.frame.seed);
+    const uint32_t pixel = slot / samples;
+    const uint32_t place = batch.tiles[pixel / kTilePixels] * kTilePixels + pixel % kTilePixels;
+    const uint32_t sample = batch.frame.samples_before + slot % samples;
+    c.ray.key = c.shadow ? w_shadow_key(place, sample, batch.depth, batch.frame.seed, batch.frame.opaque_shadows)
+                         : w_ray_key(place, sample, batch.depth, W_RAY_PATH, batch.frame.seed);
     if (const auto skip = std::bit_cast<uint32_t>(l.w); skip != W_NONE) c.skip = long(segment(skip));
     if (c.shadow) {
       c.blocked = !(found[i].x > 0);

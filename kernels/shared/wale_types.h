@@ -253,13 +253,10 @@ typedef struct WCamera {
 
 /* Everything that changes between launches. */
 typedef struct WFrame {
-  w_uint first_path; /* first (pixel, sample) index of this wave, in 2^32 steps below */
-  w_uint first_path_high;
   w_uint paths; /* in this wave */
   w_uint seed;
   w_uint samples_before;  /* samples per pixel already done: sample = samples_before + local */
   w_uint samples_in_wave; /* per pixel */
-  w_uint first_pixel;
   w_uint max_depth;     /* 0 = unlimited */
   w_int light_sampling; /* 0 MIS, 1 light sampling only, 2 BSDF sampling only */
   w_uint lights;
@@ -292,6 +289,6 @@ static_assert(sizeof(WLight) == 48);
 static_assert(sizeof(WSphere) == 32);
 static_assert(sizeof(WEnvironment) == 80);
 static_assert(sizeof(WCamera) == 96);
-static_assert(sizeof(WFrame) == 52);
+static_assert(sizeof(WFrame) == 40);
 #endif
 #endif

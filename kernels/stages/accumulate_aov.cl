@@ -2,13 +2,16 @@
 
 /* First-hit features: sums over samples of 4 x float4 per pixel, the last w counts the samples that met something;
    and the ply of the pixel's first sample. Arguments as in accumulate. */
-__kernel void accumulate_aov(WFrame frame, WCamera camera, uint first, uint film_first, uint pixels,
-                             __global const float4* aov, __global float4* film, __global uint* ply) {
-  const uint i = get_global_id(0), g = first + i;
-  if (i >= pixels) return;
+__kernel void accumulate_aov(WFrame frame, WCamera camera, __global const uint* wave_tiles, uint band_first,
+                             uint band_pixels, __global const float4* aov, __global float4* film,
+                             __global uint* ply) {
+  const uint g = get_global_id(0);
+  if (g >= frame.paths / frame.samples_in_wave) return;
+  const uint number = w_wave_pixel(wave_tiles, g), in_band = number - band_first;
+  if (in_band >= band_pixels) return;
   int x, y;
-  if (!w_pixel_xy(frame.first_pixel + g, camera.width, camera.height, &x, &y)) return;
-  const ulong pixel = (ulong)(film_first + i);
+  if (!w_pixel_xy(number, camera.width, camera.height, &x, &y)) return;
+  const ulong pixel = (ulong)in_band;
   for (uint k = 0; k < frame.samples_in_wave; ++k) {
     __global const float4* in = aov + ((ulong)g * frame.samples_in_wave + k) * 4;
     if (frame.samples_before + k == 0) ply[pixel] = as_uint(in[3].w);

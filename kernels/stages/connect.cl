@@ -19,7 +19,7 @@ __kernel void connect(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, __global cons
   w_ask_for_start(&scene, shadow_l, list, i, count);
   WRay ray = w_slot_ray(shadow_o, shadow_l, shadow_d, slot);
   ray.tmax = shadow_d[slot].w;
-  ray.key =
-      w_shadow_key(w_slot_pixel(&frame, slot), w_slot_sample(&frame, slot), depth, frame.seed, frame.opaque_shadows);
+  const uint pixel = w_slot_pixel(&frame, wave_tiles, slot);
+  ray.key = w_shadow_key(pixel, w_slot_sample(&frame, slot), depth, frame.seed, frame.opaque_shadows);
   if (w_connects(&scene, &ray)) radiance[slot].xyz += shadow_c[slot].xyz;
 }

@@ -14,7 +14,7 @@ __kernel void intersect(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, __global co
   const uint slot = list[i];
   const WScene scene = W_SCENE;
   w_ask_for_start(&scene, ray_l, list, i, count);
-  const WRay ray = w_path_ray(&frame, ray_o, ray_l, ray_d, slot, depth);
+  const WRay ray = w_path_ray(&frame, ray_o, ray_l, ray_d, wave_tiles, slot, depth);
   WHit h;
   w_meet(&scene, &ray, &h);
   W_STORE_HIT(&scene, slot, h)

@@ -14,7 +14,8 @@ __kernel void intersect_packets(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, __g
   const uint count = min(end - first, (uint)W_LANES);
   const WScene scene = W_SCENE;
   WRay rays[W_LANES];
-  for (uint i = 0; i < count; ++i) rays[i] = w_path_ray(&frame, ray_o, ray_l, ray_d, list[first + i], depth);
+  for (uint i = 0; i < count; ++i)
+    rays[i] = w_path_ray(&frame, ray_o, ray_l, ray_d, wave_tiles, list[first + i], depth);
   WPacket packet;
   w_meet_packet(&scene, rays, count, &packet);
   for (uint i = 0; i < count; ++i) {

@@ -18,13 +18,13 @@ __kernel void miss(WFrame frame, W_PATH_PARAMS, W_LIGHT_PARAMS, __global float4*
 #endif
 #ifdef W_HAS_ENVIRONMENT
   const WLights lights = W_LIGHTS;
-  const float3 d = ray_d[slot].xyz;
+  const w_real3 d = w_real3_of(ray_d[slot]);
   const float density = ray_d[slot].w;
-  float share = 1.0f;  // of the two ways to arrive here, light and BSDF sampling
+  w_real share = R(1.0);  // of the two ways to arrive here, light and BSDF sampling
   if (density >= 0.0f) {
     if (frame.light_sampling == 1) return;
     if (frame.light_sampling == 0) share = w_mis(density, w_environment_pdf(&lights, d));
   }
-  radiance[slot].xyz += weight[slot].xyz * w_environment_radiance(&lights, d) * share;
+  radiance[slot].xyz += w_float3(w_real3_of(weight[slot]) * w_environment_radiance(&lights, d) * share);
 #endif
 }

@@ -51,6 +51,7 @@ TEST(Accuracy, PresetsNameOneLevelOfEveryOption) {
 TEST(Accuracy, FabricsThatDifferAreMixed) {
   EXPECT_EQ(accuracy_option("detail").at(with({"fabrics.b.detail=none"})), "mixed");
   EXPECT_EQ(accuracy_option("curves").at(with({"fabrics.*.tolerance=0.07"})), "0.07");
+  EXPECT_EQ(accuracy_option("warp").at(with({"fabrics.*.storage=procedural"})), "1");
 }
 
 TEST(Accuracy, WrongNamesAreRefusedWithTheRightOnes) {

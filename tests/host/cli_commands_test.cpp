@@ -1,11 +1,15 @@
 // What the commands write when all is well.
+#include <fmt/format.h>
+
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <sstream>
 
 #include "cli_fixture.h"
+#include "host/accuracy.h"
 #include "host/image.h"
+#include "host/price_class.h"
 
 namespace wale::test {
 namespace {
@@ -65,6 +69,75 @@ TEST_F(CliCommands, PlanListsWhatIsLeftOut) {
 
   const std::string text = good({"plan", scene_});
   EXPECT_LT(text.find("simulated\n  plies "), text.find("left out\n  triangles "));
+}
+
+TEST_F(CliCommands, PlanSaysWhatIsBuiltLaunchedAndDropped) {
+  const std::vector<std::string> lamps = {
+      "--set", R"(lights=[{"type":"quad","name":"off","position":[0,0,1],"radiance":0}])"};
+  const auto plan_with = [&](std::vector<std::string> more) {
+    std::vector<std::string> args = {"plan", scene_, "--json", "-"};
+    args.insert(args.end(), more.begin(), more.end());
+    return Json::parse(good(args));
+  };
+  const Json plan = plan_with(lamps);
+  std::map<std::string, Json> programs;
+  for (const auto& p : plan["programs"]) programs[p["file"]] = p;
+  EXPECT_EQ(programs["stages/shade_ply.cl"]["launched"], true);
+  EXPECT_EQ(programs["stages/shade_fibre.cl"]["used"], false);
+  // The lamp's structure is compiled, its darkness is data.
+  EXPECT_EQ(programs["stages/connect.cl"]["used"], true);
+  EXPECT_EQ(programs["stages/connect.cl"]["launched"], false);
+  ASSERT_GE(plan["dropped"].size(), 2u);
+  EXPECT_EQ(plan["dropped"][0]["what"], "light \"off\" (quad)");
+  EXPECT_EQ(plan["dropped"][0]["because"], "it is black: it is never sampled");
+  size_t sum = 0;
+  for (const auto& [name, bytes] : plan["buffers"].items()) sum += bytes.get<size_t>();
+  EXPECT_EQ(plan["bytes"], sum);
+  EXPECT_GT(plan["buffers"]["path state"].get<size_t>(), 1u << 20);
+
+  const Json all = plan_with({"--features", "all"});
+  std::map<std::string, Json> features;
+  for (const auto& f : all["features"]) features[f["feature"]] = f;
+  EXPECT_EQ(features["spheres"]["used"], false);
+  EXPECT_EQ(features["spheres"]["built"], true);
+  EXPECT_EQ(features["Lambert ply lobes"]["built"], false) << "a choice, not a structure";
+  EXPECT_TRUE(contains(all["options"].get<std::string>(), "-DW_HAS_SPHERES"));
+}
+
+TEST_F(CliCommands, PlanGivesEveryAccuracyOptionWithItsPrice) {
+  const Json plan = Json::parse(good({"plan", scene_, "--json", "-", "--set", "integrator.max_depth=4"}));
+  ASSERT_EQ(plan["accuracy"].size(), accuracy_options().size());
+  for (size_t i = 0; i < plan["accuracy"].size(); ++i) {
+    const Json& row = plan["accuracy"][i];
+    const AccuracyOption& option = accuracy_options()[i];
+    EXPECT_EQ(row["option"], option.name);
+    EXPECT_EQ(row["levels"].size(), option.levels.size());
+    if (option.name == "depth") {
+      EXPECT_EQ(row["level"], "4");
+    }
+  }
+}
+
+// The figures that `wale plan` quotes are those of the committed measurement.
+TEST_F(CliCommands, PricesAreThoseThatWereMeasured) {
+  const std::string table = file_text(std::filesystem::path(WALE_SOURCE_DIR) / "bench/results/prices.md");
+  size_t quoted = 0;
+  for (const AccuracyOption& option : accuracy_options())
+    for (const AccuracyLevel& level : option.levels) {
+      const PriceClass price = price_class(option.name, level.name);
+      const size_t row = table.find(fmt::format("| {} | {} | ", option.name, level.name));
+      if (price.times == 0) {
+        EXPECT_EQ(price.name, "not measured");
+        continue;
+      }
+      ++quoted;
+      ASSERT_NE(row, std::string::npos) << option.name << " " << level.name;
+      const std::string line = table.substr(row, table.find('\n', row) - row);
+      EXPECT_TRUE(contains(line, fmt::format(" | {:.2f} | ", price.times))) << line;
+      EXPECT_EQ(price.name, price.times < 1.1 ? "cheap" : price.times < 2 ? "moderate" : "dear");
+      EXPECT_EQ(price.source, "bench/results/prices.md");
+    }
+  EXPECT_GT(quoted, 20u);
 }
 
 TEST_F(CliCommands, DevicesListsTheFirst) {

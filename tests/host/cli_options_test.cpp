@@ -56,6 +56,10 @@ TEST_F(CliOptions, NumbersOutOfRange) {
   EXPECT_TRUE(contains(render_refused_with({"--seconds", "nan"}), "--seconds: nan: a number above 0 is needed"));
 }
 
+TEST_F(CliOptions, FeaturesThatAreNeitherNeededNorAll) {
+  EXPECT_TRUE(contains(render_refused_with({"--features", "some"}), "--features: some not in {needed,all}"));
+}
+
 TEST_F(CliOptions, OutputInAMissingFolder) {
   EXPECT_EQ(refused({"render", scene_, "-o", at("none/a.png")}),
             "wale: none/a.png: the folder none does not exist; make it first");

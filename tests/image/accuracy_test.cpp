@@ -23,16 +23,20 @@ Scene lamps(double pitch = 0.002) {
   return scene;
 }
 
+void expect_same_mean(const Picture& a, const Picture& b) {
+  size_t tests = 0;
+  const double p = smallest_p(a.image, b.image, tests);
+  EXPECT_GT(p, sidak(1e-4, tests));
+  EXPECT_EQ(bad_events(b.counts), 0u);
+}
+
 TEST(Accuracy, ChoiceOfLightsKeepsTheMean) {
   Scene scene = lamps();
   const Picture power = take(scene, 128, 1);
   scene.integrator.light_choice = "uniform";
   const Picture uniform = take(scene, 128, 2);
-  size_t tests = 0;
-  const double p = smallest_p(power.image, uniform.image, tests);
-  EXPECT_GT(p, sidak(1e-4, tests));
+  expect_same_mean(power, uniform);
   EXPECT_NE(mean_rgb(power.image), mean_rgb(uniform.image));
-  EXPECT_EQ(bad_events(uniform.counts), 0u);
 }
 
 // Behind the cloth stands a lamp: plies that stop its light whole make the front darker, and not where nothing does.
@@ -58,10 +62,7 @@ TEST(Accuracy, RelaxedArithmeticKeepsTheMean) {
   const Picture exact = take(scene, 64, 1);
   scene.integrator.math = "relaxed";
   const Picture relaxed = take(scene, 64, 2);
-  size_t tests = 0;
-  const double p = smallest_p(exact.image, relaxed.image, tests);
-  EXPECT_GT(p, sidak(1e-4, tests));
-  EXPECT_EQ(bad_events(relaxed.counts), 0u);
+  expect_same_mean(exact, relaxed);
 }
 
 }  // namespace

@@ -17,17 +17,25 @@ const Device& device() {
   return d;
 }
 
-Picture take_on(const Device& dev, const Scene& scene, int spp, unsigned seed, uint32_t pool, bool aovs) {
-  const World world = build_world(scene, Loaders{[](const auto& file) { return read_mesh(file); },
-                                                 [](const auto& file) { return read_image(file, true); }});
-  const SceneDevice on_device(dev, world, local_stage(scene.integrator));
-  IntegratorScene integrator = scene.integrator;
+Studio::Studio(const Device& device, const Scene& scene)
+    : device_(device),
+      integrator_(scene.integrator),
+      world_(build_world(scene, Loaders{[](const auto& file) { return read_mesh(file); },
+                                        [](const auto& file) { return read_image(file, true); }})),
+      on_device_(device, world_, local_stage(scene.integrator), joints(scene.integrator)) {}
+
+Rendered Studio::take(const RenderOptions& options, unsigned seed) const {
+  IntegratorScene integrator = integrator_;
   integrator.seed = seed;
+  return render(device_, world_, on_device_, integrator, options);
+}
+
+Picture take_on(const Device& dev, const Scene& scene, int spp, unsigned seed, uint32_t pool, bool aovs) {
   RenderOptions options;
   options.spp = spp;
   options.pool = pool;
   options.aovs = aovs;
-  Rendered r = render(dev, world, on_device, integrator, options);
+  Rendered r = Studio(dev, scene).take(options, seed);
   return {std::move(r.image), std::move(r.counts)};
 }
 

@@ -10,6 +10,19 @@ namespace wale::test {
 /// The one device of the tests; fails the program when there is none.
 const Device& device();
 
+/// A scene that is made ready once and rendered often.
+class Studio {
+ public:
+  Studio(const Device& device, const Scene& scene);
+  Rendered take(const RenderOptions& options, unsigned seed = 0) const;
+
+ private:
+  const Device& device_;
+  IntegratorScene integrator_;
+  World world_;
+  SceneDevice on_device_;
+};
+
 /// Builds and renders a scene made in code.
 struct Picture {
   Image image;

@@ -42,7 +42,7 @@ struct Polyline {
 
 }  // namespace
 
-BruteForce::BruteForce(const std::vector<PlyPatch>& patches, const std::vector<float>& positions) {
+BruteForce::BruteForce(const std::vector<PlyPatch>& patches, const std::vector<float>& positions, Joints joints) {
   for (const PlyPatch& patch : patches)
     for (uint32_t p = 0; p < patch.plies; ++p) {
       Polyline line;
@@ -57,8 +57,10 @@ BruteForce::BruteForce(const std::vector<PlyPatch>& patches, const std::vector<f
         const long i = long(patch.first + k);
         OracleSegment s{line.at(i - 1), line.at(i), line.at(i + 1), line.at(i + 2), line.cut(i),        line.cut(i + 1),
                         false,          false,      patch.radius,   patch.tau,      first + uint32_t(i)};
-        s.sphere_start = s.cut_start;
-        s.sphere_end = s.cut_end && !patch.ghost_ends && i + 2 == long(patch.count);
+        s.capsules = joints == Joints::capsule;
+        if (joints != Joints::mitre) s.cut_start = s.cut_end = true;
+        s.sphere_start = s.cut_start && joints != Joints::open;
+        s.sphere_end = s.cut_end && joints != Joints::open && !patch.ghost_ends && i + 2 == long(patch.count);
         index_[s.id] = segments_.size();
         segments_.push_back(s);
         const dvec3 c = 0.5 * (s.start + s.end);

@@ -25,7 +25,8 @@ struct OracleHit {
 class BruteForce {
  public:
   /// `positions`: x, y, z of every vertex.
-  BruteForce(const std::vector<PlyPatch>& patches, const std::vector<float>& positions);
+  BruteForce(const std::vector<PlyPatch>& patches, const std::vector<float>& positions,
+             Joints joints = Joints::mitre);
   /// `skip` is the id of the segment that the ray starts on, or -1.
   OracleHit closest(const Ray& ray, long skip = -1) const;
   size_t segments() const { return segments_.size(); }

@@ -84,9 +84,10 @@ __kernel void surfaces(PARAMS, __global const TestHit* hits, __global const floa
 }
 )";
 
-FabricDevice upload(const Device& device, const Fabric& fabric, float tau, LocalStage stage, bool updatable) {
+FabricDevice upload(const Device& device, const Fabric& fabric, float tau, LocalStage stage, bool updatable,
+                    Joints joints) {
   const FabricInput input{&fabric, 0, tau};
-  return upload_fabrics(device, {&input, 1}, {0, 0, 0}, stage, updatable);
+  return upload_fabrics(device, {&input, 1}, {0, 0, 0}, stage, updatable, joints);
 }
 
 }  // namespace
@@ -102,13 +103,14 @@ std::vector<PlyPatch> patches_of(const Fabric& fabric, float tau) {
   return patches;
 }
 
-FabricTracer::FabricTracer(const Device& device, const Fabric& fabric, float tau, LocalStage stage, bool updatable)
+FabricTracer::FabricTracer(const Device& device, const Fabric& fabric, float tau, LocalStage stage, bool updatable,
+                           Joints joints)
     : device_(device),
       knit_(fabric),
       stage_(stage),
       fibres_(fabric.report.fibres > 0),
       procedural_(fabric.procedural),
-      fabric_(upload(device, fabric, tau, stage, updatable)),
+      fabric_(upload(device, fabric, tau, stage, updatable, joints)),
       leaves_(fabric_.tree.leaves.read(device)),
       counters_(device, W_EVENT_COUNT) {
   counters_.fill(device, 0);

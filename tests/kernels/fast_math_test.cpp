@@ -21,6 +21,7 @@ TEST_P(FastMath, SamplesThatAreNotFiniteAreCountedAndLeftOut) {
   WFrame frame{};
   frame.samples_in_wave = 1;
   const uint32_t pixels = 64;
+  frame.paths = pixels;
   const float kWrong[] = {NAN, -NAN, INFINITY, -INFINITY};
   std::vector<w_float4> samples(pixels, w_float4{1, 1, 1, 0});
   uint32_t wrong = 0;
@@ -29,13 +30,14 @@ TEST_P(FastMath, SamplesThatAreNotFiniteAreCountedAndLeftOut) {
     *channels[i % 3] = kWrong[i % 4];
   }
   samples[1].w = NAN;  // no colour: set by the kernel
+  const Buffer<uint32_t> wave_tiles(device, std::vector<uint32_t>{0});
   const Buffer<w_float4> radiance(device, samples);
   Buffer<w_float4> film(device, std::vector<w_float4>(pixels * 8, w_float4{0, 0, 0, 0}));
   Buffer<uint32_t> events(device, std::vector<uint32_t>(W_EVENT_COUNT, 0));
   cl_uint index = 0;
   kernel.setArg(index++, frame);
   kernel.setArg(index++, camera);
-  kernel.setArg(index++, 0u);
+  kernel.setArg(index++, wave_tiles.cl());
   kernel.setArg(index++, 0u);
   kernel.setArg(index++, pixels);
   kernel.setArg(index++, radiance.cl());

@@ -40,6 +40,18 @@ void expect_the_same_on(const Strands& strands, const char* name) {
   const Box& bounds = tracer.tree().bounds;
   expect_the_same(tracer, camera_rays(bounds, 96, 0.8), "wide");
   expect_the_same(tracer, camera_rays(bounds, 96, 0.02), "narrow");
+  // Off the plies towards one light, still neighbours: alone they ask w_ahead first, in packets never.
+  const std::vector<Ray> narrow = camera_rays(bounds, 96, 0.02);
+  const std::vector<Hit> starts = tracer.trace(narrow, kWide);
+  const dvec3 light(0.4 * bounds.lo[0] + 0.6 * bounds.hi[0], 0.5 * (bounds.lo[1] + bounds.hi[1]), bounds.lo[2]);
+  std::vector<Ray> lit = bounce_rays(narrow, starts, tracer.surfaces(narrow, starts), 11);
+  for (size_t i = 0; i < lit.size(); ++i) {
+    const dvec3 start(double(lit[i].o[0]) + lit[i].l[0], double(lit[i].o[1]) + lit[i].l[1],
+                      double(lit[i].o[2]) + lit[i].l[2]);
+    const dvec3 d = glm::normalize(light - start);
+    for (int k = 0; k < 3; ++k) lit[i].d[k] = float(d[k]);
+  }
+  expect_the_same(tracer, lit, "neighbours off the plies");
   std::vector<Ray> holed = camera_rays(bounds, 96, 0.1);
   for (size_t i = 0; i < holed.size(); i += 5) holed[i].d[i % 3] = NAN;
   expect_the_same(tracer, holed, "some not numbers");

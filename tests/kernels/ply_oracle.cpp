@@ -67,7 +67,7 @@ SegmentEntry<Real> segment_entry(const OracleSegment& s, const Ray& ray, double 
     const vec x = q + s0 * d;
     for (const vec& arm : {ea, eb}) {
       const Real length = glm::length(arm), z = length > 0 ? glm::dot(x, arm) / length : 0;
-      if (z > eps && z < length) return;
+      if (z > eps && (z < length || s.capsules)) return;
     }
     if (!(t > 0 && t < entry.t)) return;
     entry.t = t;

@@ -21,6 +21,7 @@ struct OracleSegment {
   double radius;  ///< metres
   float tau;      ///< optical radius; -1 or less = opaque
   uint32_t id;    ///< vertex id of its start
+  bool capsules = false;  ///< every joint of the ply has a sphere: no part of one shows beyond the next joint
 };
 
 /// Front-face entry of a ray into one segment.

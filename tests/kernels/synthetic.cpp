@@ -220,10 +220,11 @@ Strands stockinette(uint32_t rows, uint32_t loops, uint32_t steps_per_loop, doub
   return s;
 }
 
-Tracer::Tracer(const Device& device, const Strands& strands)
+Tracer::Tracer(const Device& device, const Strands& strands, Joints joints)
     : device_(device),
       frames_(device, strands.frames),
-      tree_(build_ply_tree(by_lanes(device), strands.patches, Buffer<float>(device, strands.positions))),
+      tree_(build_ply_tree(by_lanes(device), strands.patches, Buffer<float>(device, strands.positions), {}, false, {},
+                           joints)),
       quantised_(device, words_only(tree_.nodes.read(device)), tree_.nodes),
       leaves_(tree_.leaves.read(device)),
       counters_(device, W_COUNTER_COUNT) {
@@ -297,8 +298,9 @@ std::vector<SurfaceOf<Real>> Tracer::surfaces_as(const std::vector<Ray>& rays, c
   return out.read(device_);
 }
 
-std::vector<Surface> Tracer::surfaces(const std::vector<Ray>& rays, const std::vector<Hit>& hits) {
-  return surfaces_as(rays, hits, "-DW_LANES=16");
+std::vector<Surface> Tracer::surfaces(const std::vector<Ray>& rays, const std::vector<Hit>& hits,
+                                      const std::string& options) {
+  return surfaces_as(rays, hits, options);
 }
 std::vector<SurfaceOf<double>> Tracer::surfaces_in_double(const std::vector<Ray>& rays,
                                                           const std::vector<HitOf<double>>& hits) {

@@ -49,7 +49,7 @@ using Hit = HitOf<float>;
 /// What w_ply_surface says about a hit.
 template <typename Real>
 struct SurfaceOf {
-  Real anchor[3], x[3], n[3], t[3], smooth_n[3];
+  Real anchor[3], x[3], n[3], t[3], smooth_n[3], smooth_t[3];
   Real phi, u, length, radius, h;
   uint32_t segment;
 };
@@ -58,7 +58,7 @@ using Surface = SurfaceOf<float>;
 /// Strands on the device, traced with given build options.
 class Tracer {
  public:
-  Tracer(const Device& device, const Strands& strands);
+  Tracer(const Device& device, const Strands& strands, Joints joints = Joints::mitre);
   /// With -DW_SIMT in `options`, down the quantised nodes.
   std::vector<Hit> trace(const std::vector<Ray>& rays, const std::string& options);
   /// Nearest hits of packets of 16 rays in the order given; `occluded` is left 0.
@@ -69,7 +69,8 @@ class Tracer {
   /// without copies. `wall`: receives seconds by the clock on the wall.
   double time(const std::vector<Ray>& rays, const std::string& options, const std::string& kernel,
               double* wall = nullptr);
-  std::vector<Surface> surfaces(const std::vector<Ray>& rays, const std::vector<Hit>& hits);
+  std::vector<Surface> surfaces(const std::vector<Ray>& rays, const std::vector<Hit>& hits,
+                                const std::string& options = "-DW_LANES=16");
   std::vector<SurfaceOf<double>> surfaces_in_double(const std::vector<Ray>& rays,
                                                     const std::vector<HitOf<double>>& hits);
   /// Id of the segment behind a hit code.

@@ -18,7 +18,7 @@ __kernel void trace(__global const uint* nodes, __global const uint* leaves, __g
   r.o = w_load3(0, rays); r.l = w_load3(1, rays); r.d = w_load3(2, rays); r.tmax = rays[9]; r.key = i;
   r.skip = r.skip_triangle = W_NONE;
   const WHit hit = w_closest(&s, &r);
-  const WPlySurface p = w_ply_surface(&s, frames, &r, &hit);
+  const WPlySurface p = w_ply_surface(&s, frames, &r, &hit, W_NORMALS_ROTATION_MINIMISING);
   vstore3(p.x, i, out);
   out[3 * count + i] = w_occluded(&s, &r) ? R(1.0) : hit.t;
 }
