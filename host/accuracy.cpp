@@ -20,12 +20,18 @@ std::string of_fabrics(const Scene& scene, const Value& value) {
     if (!common.empty() && one != common) return "mixed";
     common = one;
   }
-  return common.empty() ? "no fabric" : common;
+  return common.empty() ? kNoFabric : common;
 }
 
 std::string detail_name(const FabricSpec& spec) {
   constexpr std::array names = {"none", "paper", "maps", "fibres"};
   return names.at(size_t(spec.detail));
+}
+
+// What plies alone know of.
+template <typename Value>
+std::string of_plies(const Scene& scene, const Value& value) {
+  return scene.fabrics.empty() ? kNoFabric : std::string(value);
 }
 
 // One level per word that a key takes.
@@ -39,14 +45,15 @@ const std::vector<AccuracyOption>& table() {
   static const std::vector<AccuracyOption> options = {
       {"local_stage", "which cells of the cloth a ray visits (KNIT21 Algorithm 2 is cell)",
        words("integrator.local_stage", {"cell", "cell+ring", "exact"}),
-       [](const Scene& s) { return s.integrator.local_stage; }},
+       [](const Scene& s) { return of_plies(s, s.integrator.local_stage); }},
       {"curves", "largest distance of the segments from the ply's curve, in ply radii",
        words("fabrics.*.tolerance", {"0.4", "0.2", "0.1", "0.05", "0.02"}),
        [](const Scene& s) {
          return of_fabrics(s, [](const FabricSpec& f) { return fmt::format("{:g}", f.tolerance); });
        }},
       {"joints", "how segments of a ply meet: cut square (gaps), with a sphere, or cut by the bisecting plane",
-       words("integrator.joints", {"open", "capsule", "mitre"}), [](const Scene& s) { return s.integrator.joints; }},
+       words("integrator.joints", {"open", "capsule", "mitre"}),
+       [](const Scene& s) { return of_plies(s, s.integrator.joints); }},
       {"warp",
        "cells along a tile's side of the lattice that bends the yarns; mesh = every vertex by the base mesh",
        {{"1", {"fabrics.*.lattice=1"}},
@@ -66,15 +73,16 @@ const std::vector<AccuracyOption>& table() {
        }},
       {"normals", "frames that plies are shaded with: of each segment, or interpolated between joints",
        words("integrator.normals", {"flat", "linear", "rotation-minimising"}),
-       [](const Scene& s) { return s.integrator.normals; }},
+       [](const Scene& s) { return of_plies(s, s.integrator.normals); }},
       {"detail", "fibres on plies: none, maps as KNIT21, maps, or a curve for every fibre",
        words("fabrics.*.detail", {"none", "paper", "maps", "fibres"}),
        [](const Scene& s) { return of_fabrics(s, detail_name); }},
       {"ply_lobes", "how a ply scatters: Lambert lobes as in papers, or the measured ones",
-       words("integrator.ply_lobes", {"paper", "full"}), [](const Scene& s) { return s.integrator.ply_lobes; }},
+       words("integrator.ply_lobes", {"paper", "full"}),
+       [](const Scene& s) { return of_plies(s, s.integrator.ply_lobes); }},
       {"ply_shadows", "plies stop all light on its way from a lamp, or let the uncollided part pass",
        words("integrator.ply_shadows", {"opaque", "attenuated"}),
-       [](const Scene& s) { return s.integrator.ply_shadows; }},
+       [](const Scene& s) { return of_plies(s, s.integrator.ply_shadows); }},
       {"depth", "scattering events per path; 0 = no limit",
        words("integrator.max_depth", {"2", "4", "8", "16", "32", "0"}),
        [](const Scene& s) { return std::to_string(s.integrator.max_depth); }},
@@ -84,6 +92,9 @@ const std::vector<AccuracyOption>& table() {
       {"light_sampling", "directions of direct light: from scattering, from lights, or both weighed (MIS)",
        words("integrator.light_sampling", {"bsdf", "light", "mis"}),
        [](const Scene& s) { return s.integrator.light_sampling; }},
+      {"vertices", "how stored curves keep their points: 16 bits a coordinate on a common lattice, or floats",
+       words("integrator.vertices", {"quantised", "full"}),
+       [](const Scene& s) { return of_plies(s, s.integrator.vertices); }},
       {"precision", "arithmetic of rays and shading; what is stored stays float",
        words("integrator.precision", {"float", "double"}), [](const Scene& s) { return s.integrator.precision; }},
       {"math", "what the kernels' compiler may do to arithmetic", words("integrator.math", {"relaxed", "exact"}),
@@ -128,12 +139,11 @@ const AccuracyOption& accuracy_option(const std::string& name) {
 }
 
 std::span<const AccuracyPreset> accuracy_presets() {
-  // The others as changes to it.
+  // The others as changes to it. None names a level of "warp": a fabric that is held procedurally needs its lattice;
+  // nor of "strain": most tiles have no table.
   const Levels final = {{"local_stage", "exact"},
                         {"curves", "0.05"},
                         {"joints", "mitre"},
-                        {"warp", "mesh"},
-                        {"strain", "affine"},
                         {"normals", "rotation-minimising"},
                         {"detail", "maps"},
                         {"ply_lobes", "full"},
@@ -141,6 +151,7 @@ std::span<const AccuracyPreset> accuracy_presets() {
                         {"depth", "0"},
                         {"light_choice", "power"},
                         {"light_sampling", "mis"},
+                        {"vertices", "full"},
                         {"precision", "float"},
                         {"math", "exact"}};
   // A reference keeps maps: explicit fibres are another model of the ply, a hundred times as large.

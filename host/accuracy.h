@@ -27,10 +27,13 @@ struct AccuracyOption {
   const AccuracyLevel* level(const std::string& wanted) const;
 };
 
+/// What an option stands at where only plies know of it and a scene has none.
+constexpr const char* kNoFabric = "no fabric";
+
 /// All of them, in the order in which they are reported.
 std::span<const AccuracyOption> accuracy_options();
 
-/// A named bundle: one level of every option.
+/// A named bundle: a level of every option that does not depend on how a fabric is held.
 struct AccuracyPreset {
   std::string name;
   std::string doc;

@@ -50,8 +50,9 @@ class Devices {
     const LocalStage stage = local_stage(integrator);
     std::vector<std::future<std::unique_ptr<SceneDevice>>> scenes;
     for (const Device& device : open_)
-      scenes.push_back(std::async(open_.size() > 1 ? std::launch::async : std::launch::deferred,
-                                  [&] { return std::make_unique<SceneDevice>(device, world, stage, joints(integrator)); }));
+      scenes.push_back(std::async(open_.size() > 1 ? std::launch::async : std::launch::deferred, [&] {
+        return std::make_unique<SceneDevice>(device, world, stage, leaf_form(integrator));
+      }));
     for (auto& scene : scenes) scenes_.push_back(scene.get());
     for (size_t d = 0; d < open_.size(); ++d) list_.push_back({&open_[d], scenes_[d].get()});
   }
@@ -205,8 +206,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   r.image.attributes = {{kSceneAttribute, scene_identity(args.scene, args.set)},
                         {kAccuracyAttribute, accuracy_settings(scene)}};
   for (const auto& output : args.outputs) write_image(r.image, output, scene.film.exposure, scene.film.view);
-  const Features features =
-      features_of(devices.list().front().device->traits(), world, scene.integrator, options);
+  const Features features = features_of(devices.list().front().device->traits(), world, scene.integrator, options);
   if (!args.stats.empty()) {
     Stats stats = stats_of(scene, world, devices.list(), features, r, rehearsal.cached());
     stats.first_sample_seconds = start.seconds();

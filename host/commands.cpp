@@ -68,7 +68,11 @@ std::vector<std::string> overrides_of(const SceneArgs& args) {
   return overrides;
 }
 
-Scene read_scene(const SceneArgs& args) { return read_scene(args.scene, overrides_of(args)); }
+Scene read_scene(const SceneArgs& args) {
+  Scene scene = read_scene(args.scene, overrides_of(args));
+  scene.accuracy_preset = args.preset;
+  return scene;
+}
 
 int run_build(const SceneArgs& args, const std::filesystem::path& json, const Loaders& loaders) {
   require_json_path(json);
@@ -84,7 +88,7 @@ int run_plan(const SceneArgs& args, const std::filesystem::path& json, const Loa
   const Scene scene = read_scene(args);
   const Device device = Device::open(one_device_number(args.device));
   const World world = world_of(scene, loaders, args.quiet);
-  const SceneDevice on_device(device, world, local_stage(scene.integrator), joints(scene.integrator));
+  const SceneDevice on_device(device, world, local_stage(scene.integrator), leaf_form(scene.integrator));
   const Plan plan = plan_render(device, scene, world, on_device, args.also);
   deliver(json, plan_json(plan), plan_text(plan));
   return 0;

@@ -133,7 +133,7 @@ Box clipped_triangle_box(const BaseMesh& mesh, uint32_t triangle, dvec2 cell_lo,
 }
 
 FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> inputs, dvec3 origin, LocalStage stage,
-                            bool updatable, Joints joints) {
+                            bool updatable, LeafForm form) {
   FabricDevice out;
   const double start = now();
   std::vector<PlyPatch> patches;
@@ -175,7 +175,7 @@ FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> i
         lattices[0].fabric->name);
   if (!lattices.empty() && updatable) bug("fabric '{}': a lattice cannot follow its mesh", lattices[0].fabric->name);
   LatticeFabrics placed;
-  if (!lattices.empty()) placed = place_lattices(device, lattices, origin, joints, first_vertex, curves);
+  if (!lattices.empty()) placed = place_lattices(device, lattices, origin, form.joints, first_vertex, curves);
   for (const PlyPatch& p : placed.patches) out.segment_count += size_t(p.intervals) * p.plies;
   out.segment_count += placed.segments;
   patches.insert(patches.end(), placed.patches.begin(), placed.patches.end());
@@ -204,7 +204,7 @@ FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> i
     for (size_t f = 0; f < inputs.size(); ++f)
       append_group_boxes(group_boxes, *inputs[f].fabric, origin, out.first_cell[f]);
   }
-  out.tree = build_ply_tree(device, patches, points, group_boxes, updatable, std::move(placed.procedural), joints);
+  out.tree = build_ply_tree(device, patches, points, group_boxes, updatable, std::move(placed.procedural), form);
   out.lattice = std::move(placed.device);
   out.pack_seconds = out.tree.pack_seconds;
   out.build_seconds = out.tree.build_seconds;

@@ -38,8 +38,7 @@ struct FabricDevice {
 /// Warps, packs and uploads. `origin` is subtracted from base positions in double. `updatable`: keep what
 /// update_fabrics() needs, about 47 bytes a segment more; for the exact stage only. Throws device errors only.
 FabricDevice upload_fabrics(const Device& device, std::span<const FabricInput> inputs, dvec3 origin,
-                            LocalStage stage = LocalStage::exact, bool updatable = false,
-                            Joints joints = Joints::mitre);
+                            LocalStage stage = LocalStage::exact, bool updatable = false, LeafForm form = {});
 
 /// Carries updatable fabrics on to moved base meshes, on the device: three floats a mesh vertex, all fabrics one after
 /// the other, metres from the origin that upload_fabrics() was given, and unit normals. Nothing is allocated. Throws a

@@ -73,6 +73,8 @@ std::vector<Reason> explain(const World& world, const IntegratorScene& integrato
        : curves  ? "every fibre is a curve of its own"
                  : no_fabric},
       {"Lambert ply lobes", f.paper_lobes, "integrator.ply_lobes is \"" + integrator.ply_lobes + "\""},
+      {"quantised vertices", f.quantised_vertices,
+       curves ? "integrator.vertices is \"" + integrator.vertices + "\"" : no_fabric},
       {"double precision", f.double_precision, "integrator.precision is \"" + integrator.precision + "\""},
       {"relaxed arithmetic", f.relaxed_math, "integrator.math is \"" + integrator.math + "\""},
       {"feature images", f.aovs, f.aovs ? "an .exr is written" : "only .png is written"},

@@ -18,6 +18,11 @@ void choose_traversal(Features& f, const IntegratorScene& integrator, const Devi
   f.lanes = f.simt || f.double_precision ? 1 : integrator.lanes ? integrator.lanes : int(traits.lanes);
 }
 
+// Definitions that no curve is read with would make other programs for nothing.
+bool keeps_quantised(const Features& f, const IntegratorScene& integrator) {
+  return (f.plies || f.fibres) && leaf_form(integrator).quantised();
+}
+
 Normals normals_of(const IntegratorScene& integrator) {
   return integrator.normals == "flat"     ? Normals::flat
          : integrator.normals == "linear" ? Normals::linear
@@ -41,6 +46,7 @@ std::string Features::options() const {
   define(lights, "W_HAS_LIGHTS");
   define(detail, "W_HAS_DETAIL");
   define(paper_lobes, "W_PAPER_LOBES");
+  define(quantised_vertices, "W_QUANTISED_VERTICES");
   define(double_precision, "W_DOUBLE");
   if (relaxed_math) out += " -cl-fast-relaxed-math";
   define(aovs, "W_AOVS");
@@ -81,10 +87,11 @@ LocalStage local_stage(const IntegratorScene& integrator) {
                                             : LocalStage::ring;
 }
 
-Joints joints(const IntegratorScene& integrator) {
-  return integrator.joints == "open"      ? Joints::open
-         : integrator.joints == "capsule" ? Joints::capsule
-                                          : Joints::mitre;
+LeafForm leaf_form(const IntegratorScene& integrator) {
+  const Joints joints = integrator.joints == "open"      ? Joints::open
+                        : integrator.joints == "capsule" ? Joints::capsule
+                                                         : Joints::mitre;
+  return {joints, integrator.vertices == "quantised" ? Vertices::quantised : Vertices::full};
 }
 
 // Told before anything is compiled.
@@ -110,6 +117,7 @@ Features analyse(const World& world, const IntegratorScene& integrator, bool aov
   f.detail = f.plies && world.fibres.any();
   f.paper_lobes = f.plies && integrator.ply_lobes == "paper";
   f.relaxed_math = integrator.math == "relaxed";
+  f.quantised_vertices = keeps_quantised(f, integrator);
   f.aovs = aovs;
   f.ply_colors = !world.ply_colors.empty();
   f.local_stage = local_stage(integrator);
@@ -147,6 +155,7 @@ Features foresee(const Scene& scene, bool aovs, const DeviceTraits& traits) {
   f.lights = f.lights && integrator.light_sampling != "bsdf";
   f.paper_lobes = f.plies && integrator.ply_lobes == "paper";
   f.relaxed_math = integrator.math == "relaxed";
+  f.quantised_vertices = keeps_quantised(f, integrator);
   f.aovs = aovs;
   f.local_stage = local_stage(integrator);
   f.normals = normals_of(integrator);

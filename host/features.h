@@ -26,6 +26,7 @@ struct Features {
   bool environment = false, lights = false;  ///< lights: something is sampled by next-event estimation
   bool detail = false;                       ///< fibres show on plies, by maps
   bool paper_lobes = false;                  ///< bodies of plies are Lambert lobes
+  bool quantised_vertices = false;           ///< leaves that are stored keep 16 bits a coordinate
   bool double_precision = false;             ///< rays and shading in double, one lane
   bool relaxed_math = false;                 ///< the compiler may reorder and approximate
   bool aovs = false;
@@ -62,8 +63,8 @@ struct Reason {
 bool quantised_tree(const DeviceTraits& traits, LocalStage stage);
 /// Stage that a scene's integrator.local_stage names.
 LocalStage local_stage(const IntegratorScene& integrator);
-/// Joints that a scene's integrator.joints names.
-Joints joints(const IntegratorScene& integrator);
+/// What a scene's integrator.joints and integrator.vertices name.
+LeafForm leaf_form(const IntegratorScene& integrator);
 Features analyse(const World& world, const IntegratorScene& integrator, bool aovs, const DeviceTraits& traits);
 /// The same from the scene alone, before anything is knitted: what analyse() will say, unless a fabric turns out empty
 /// or so large that it is held procedurally unasked. For programs that are compiled ahead (host/rehearsal.h); nothing

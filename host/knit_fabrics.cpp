@@ -13,6 +13,7 @@
 #include "geom/lattice_fabric.h"
 #include "geom/mesh_repair.h"
 #include "geom/run_tasks.h"
+#include "host/accuracy.h"
 #include "host/features.h"
 #include "host/materials.h"
 #include "host/placement.h"
@@ -24,7 +25,15 @@ namespace {
 
 // Colours that vary are stored per vertex; the cell stages list stored segments.
 std::string lattice_obstacle_of_scene(const Scene& scene) {
-  if (scene.integrator.local_stage != "exact") return "integrator.local_stage is not \"exact\"";
+  if (const std::string& stage = scene.integrator.local_stage; stage != "exact") {
+    const std::string& preset = scene.accuracy_preset;
+    std::string set_by;
+    if (!preset.empty())
+      for (const auto& [option, level] : accuracy_preset(preset).levels)
+        if (option == "local_stage" && level == stage)
+          set_by = fmt::format(" (--preset {} sets it; --set integrator.local_stage=exact undoes that)", preset);
+    return fmt::format("integrator.local_stage is \"{}\"{}", stage, set_by);
+  }
   for (const auto& fabric : scene.fabrics)
     if (colors_vary(scene.materials.at(size_t(fabric.material)).yarn, fabric.color_image))
       return fmt::format("colours vary over fabric \"{}\"", fabric.spec.name);

@@ -22,20 +22,17 @@ std::string size_text(uint64_t bytes) {
                             : fmt::format("{:.1f} GB", 1e-9 * double(bytes));
 }
 
-uint64_t leaf_words(uint32_t intervals, uint32_t plies) {
-  return W_LEAF_HEADER + 3 * uint64_t(((intervals + 3) * plies + 3) / 4 * 4);
-}
-
 }  // namespace
 
 std::vector<MemoryNeed> memory_needs(const World& world, const Features& features, uint32_t pool,
                                      const DeviceTraits& traits) {
   uint64_t vertices = 0, patches = 0, leaves = 0, lattices = 0, anchors = 0;
+  const LeafForm form(Joints::mitre, features.quantised_vertices ? Vertices::quantised : Vertices::full);
   for (const Fabric& fabric : world.fabrics) {
     vertices += fabric.anchors.size();
     anchors += fabric.anchors.size();
     patches += fabric.patches.size();
-    for (const Patch& patch : fabric.patches) leaves += 4 * leaf_words(patch.intervals, fabric.runs[patch.run].plies);
+    for (const Patch& patch : fabric.patches) leaves += 4 * form.words(patch.intervals, fabric.runs[patch.run].plies);
     for (const LatticeChart& chart : fabric.lattice) {
       lattices += chart.lattice.position.size() * W_LATTICE_WORDS * 4;
       const uint32_t plies = uint32_t(chart.tile.plies);
@@ -43,7 +40,7 @@ std::vector<MemoryNeed> memory_needs(const World& world, const Features& feature
       for (const TileYarn& yarn : chart.tile.yarns) {
         const uint32_t pieces = patches_of(yarn, plies), intervals = (yarn.samples + pieces - 1) / pieces;
         patches += tiles * pieces;
-        if (!fabric.procedural) leaves += tiles * pieces * 4 * leaf_words(intervals, plies);
+        if (!fabric.procedural) leaves += tiles * pieces * 4 * form.words(intervals, plies);
       }
     }
     if (!fabric.procedural) vertices += lattice_vertices(fabric);

@@ -15,18 +15,14 @@ namespace {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-// Words of x (or y, z) of a leaf.
-uint32_t leaf_stride(const PlyPatch& patch) { return ((patch.intervals + 3) * patch.plies + 3) / 4 * 4; }
-
-uint32_t leaf_words(const PlyPatch& patch) { return W_LEAF_HEADER + 3 * leaf_stride(patch); }
-
-void write_header(const PlyPatch& patch, uint32_t* leaf) {
+void write_header(const PlyPatch& patch, const LeafForm& form, uint32_t* leaf) {
   const uint32_t lanes = patch.intervals * patch.plies;
   leaf[W_LEAF_RADIUS] = std::bit_cast<uint32_t>(patch.radius);
   leaf[W_LEAF_SEGMENT] = patch.first_vertex + patch.first;
   leaf[W_LEAF_STRIDE] = patch.count;
   leaf[W_LEAF_MATERIAL] = patch.material;
-  leaf[W_LEAF_LAYOUT] = patch.plies | lanes << 8 | leaf_stride(patch) << 16;
+  leaf[W_LEAF_LAYOUT] = patch.plies | lanes << 8 | form.stride(patch.intervals, patch.plies) << 16 |
+                        (form.quantised() ? W_LAYOUT_QUANTISED : 0);
   leaf[W_LEAF_TAU] = std::bit_cast<uint32_t>(patch.tau);
   leaf[W_LEAF_CELL] = patch.cell;
   leaf[W_LEAF_FABRIC] = patch.fabric;
@@ -42,8 +38,9 @@ void write_headers(const Device& device, std::span<const PlyPatch> patches, cons
     const size_t end = part.first_leaf + part.leaves;
     for (size_t first = part.first_leaf; first < end; first += kPiece) {
       const size_t last = std::min(first + kPiece, end), begin = place(first);
-      words.assign(place(last - 1) + leaf_words(patches[last - 1]) - begin, 0);
-      for (size_t i = first; i < last; ++i) write_header(patches[i], words.data() + place(i) - begin);
+      const PlyPatch& end_patch = patches[last - 1];
+      words.assign(place(last - 1) + tree.form.words(end_patch.intervals, end_patch.plies) - begin, 0);
+      for (size_t i = first; i < last; ++i) write_header(patches[i], tree.form, words.data() + place(i) - begin);
       device.queue().enqueueWriteBuffer(part.words.cl(), CL_TRUE, begin * 4, words.size() * 4, words.data());
     }
   }
@@ -75,19 +72,22 @@ void refuse_if_too_far(const PlyPatch& patch, const Box& box) {
 }  // namespace
 
 PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, const Buffer<float>& positions,
-                       std::span<const Box> group_box, bool updatable, ProceduralLeaves procedural, Joints joints) {
+                       std::span<const Box> group_box, bool updatable, ProceduralLeaves procedural, LeafForm form) {
   if (updatable && !group_box.empty()) bug("ply tree: a tree of cells cannot be refitted");
   if (updatable && !procedural.number.empty()) bug("ply tree: procedural leaves cannot be refitted");
   PlyTree tree;
+  tree.form = form;
   const double start = now();
   std::vector<uint32_t> words;
+  uint32_t fabrics = 0;
   words.reserve(patches.size());
   for (const PlyPatch& patch : patches) {
     if (patch.plies < 1 || patch.plies > 8 || patch.intervals < 1 || patch.intervals * patch.plies > W_LEAF_LANES ||
         patch.first + patch.intervals >= patch.count)
       bug("ply tree: patch of {} x {} segments at {} of {} vertices", patch.intervals, patch.plies, patch.first,
           patch.count);
-    words.push_back(leaf_words(patch));
+    words.push_back(form.words(patch.intervals, patch.plies));
+    fabrics = std::max(fabrics, patch.fabric + 1);
   }
   tree.leaf_offset.reserve(patches.size());
   tree.leaves = LeafBuffers(device, words, procedural.number.empty() ? 1u << 28 : W_LEAF_PROCEDURAL, tree.leaf_offset);
@@ -102,13 +102,16 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
   boxes.insert(boxes.begin(), patches.size(), Box{});
   const Buffer<uint32_t> runs(device, run_of);
   run_of = {};
+  LeafSteps steps(device, form.quantised() ? fabrics : 0, runs, positions);
   if (!patches.empty()) {
+    steps.measure(device, tree.leaves.parts());
     const Buffer<float> box_buffer(device, 6 * patches.size());
     cl::Kernel pack(build_program(device, "pack.cl"), "pack_leaves");
     pack.setArg(0, runs.cl());
     pack.setArg(1, positions.cl());
-    pack.setArg(6, uint32_t(joints));
+    pack.setArg(6, uint32_t(form.joints));
     pack.setArg(7, box_buffer.cl());
+    pack.setArg(8, steps.cl());
     for (const LeafBuffers::Part& part : tree.leaves.parts()) {
       pack.setArg(2, part.words.cl());
       pack.setArg(3, part.first_number);
@@ -137,7 +140,7 @@ PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, 
   if (!patches.empty() && (device.traits().traversal == Traversal::lanes || updatable))
     place_leaves(device, uint32_t(wide.nodes()), tree);
   tree.node_cell = Buffer<uint32_t>(device, group_box.empty() ? std::vector<uint32_t>{} : wide.node_cell);
-  if (updatable) tree.refit = std::make_unique<PlyRefit>(device, runs, positions, wide, tree, joints);
+  if (updatable) tree.refit = std::make_unique<PlyRefit>(device, runs, positions, wide, tree, steps);
   tree.node_count = wide.nodes();
   if (device.traits().traversal == Traversal::simt && group_box.empty()) {
     tree.quantised = QuantisedTree(device, wide, tree.nodes);

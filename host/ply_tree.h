@@ -7,9 +7,10 @@
 #include "geom/wide_tree.h"
 #include "host/device.h"
 #include "host/leaf_buffers.h"
+#include "host/leaf_form.h"
+#include "host/leaf_steps.h"
 #include "host/ply_refit.h"
 #include "host/quantised_tree.h"
-#include "shared/joints.h"
 
 namespace wale {
 
@@ -34,12 +35,10 @@ struct ProceduralLeaves {
   std::vector<Box> box;
 };
 
-/// How segments meet: W_JOINTS_* of kernels/shared/joints.h.
-enum class Joints : uint32_t { open = W_JOINTS_OPEN, capsule = W_JOINTS_CAPSULE, mitre = W_JOINTS_MITRE };
-
 /// Leaves and tree over patches, on the device.
 struct PlyTree {
   LeafBuffers leaves;
+  LeafForm form;
   Buffer<uint32_t> nodes;   ///< empty where they are quantised and not refitted
   QuantisedTree quantised;  ///< for devices that traverse by Traversal::simt
   size_t node_count = 0;
@@ -74,7 +73,7 @@ constexpr float kLargestCoordinate = 1e12f;
 /// kLargestCoordinate, or has a vertex or radius that is no number.
 PlyTree build_ply_tree(const Device& device, std::span<const PlyPatch> patches, const Buffer<float>& positions,
                        std::span<const Box> group_box = {}, bool updatable = false, ProceduralLeaves procedural = {},
-                       Joints joints = Joints::mitre);
+                       LeafForm form = {});
 
 /// Lets an updatable tree, free of cells, follow what the buffer of positions that it was built from holds now; nothing
 /// is allocated. Waits for the device. Throws a user error when a ply reaches farther out than kLargestCoordinate.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <future>
 
 #include "geom/error.h"
@@ -84,11 +85,13 @@ class Job {
   Rendered run(const World& world) {
     if (options_.ready) options_.ready();
     start_ = Clock::now();
+    const std::clock_t cpu = std::clock();
     if (options_.error > 0)
       work_towards_goal();
     else
       work_on_all();
     result_.seconds = since(start_);
+    result_.cpu_seconds = double(std::clock() - cpu) / CLOCKS_PER_SEC;
     result_.stopped |= !list_->complete();
     for (size_t d = 0; d < waves_.size(); ++d) {
       DeviceShare& share = result_.devices[d];

@@ -49,6 +49,7 @@ struct Rendered {
   WaveCounts counts;  ///< of all devices
   std::vector<DeviceShare> devices;
   double seconds = 0;               ///< from the first wave on
+  double cpu_seconds = 0;           ///< the same time, of all threads of this process
   double first_sample_seconds = 0;  ///< of them, until the first device's first wave was done
   double program_seconds = 0;       ///< wall time until all programs were built
   Reached reached;                  ///< noise and samples of the picture's tiles

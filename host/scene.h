@@ -165,6 +165,7 @@ struct IntegratorScene {
   std::string math = "exact";              ///< exact, relaxed
   std::string joints = "mitre";            ///< open, capsule, mitre
   std::string normals = "rotation-minimising";  ///< flat, linear, rotation-minimising
+  std::string vertices = "full";                ///< quantised, full
   std::string precision = "float";              ///< float, double
   int lanes = 0;                           ///< 0 = from the device; 1, 8, 16
   unsigned pool = 0;                       ///< paths in flight; 0 = from the device
@@ -182,6 +183,7 @@ struct Scene {
   std::vector<FabricScene> fabrics;
   std::vector<ObjectScene> objects;
   std::vector<LightScene> lights;
+  std::string accuracy_preset;  ///< of --preset, for messages
 };
 
 /// Reads a scene file strictly. Throws a user error "file:line:column: ..." with the nearest valid choice on unknown

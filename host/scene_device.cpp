@@ -41,16 +41,16 @@ std::vector<FabricInput> fabric_inputs(const World& world) {
   return inputs;
 }
 
-FabricDevice upload(const Device& device, const World& world, LocalStage stage, Joints joints) {
+FabricDevice upload(const Device& device, const World& world, LocalStage stage, LeafForm form) {
   const DriverCall guard;
-  return upload_fabrics(device, fabric_inputs(world), world.origin, stage, false, joints);
+  return upload_fabrics(device, fabric_inputs(world), world.origin, stage, false, form);
 }
 
-SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage stage, Joints joints)
+SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage stage, LeafForm form)
     : device_(device),
       stage_(stage),
       simt_(quantised_tree(device.traits(), stage)),
-      fabric_(upload(device, world, stage, joints)) {
+      fabric_(upload(device, world, stage, form)) {
   const TriangleTree tree = build_triangle_tree(corners_of(world.triangles));
   ply_materials_ = Buffer<WPlyMaterial>(device, world.ply_materials);
   fibre_details_ = Buffer<WFibreDetail>(device, world.fibres.details);

@@ -13,8 +13,7 @@ std::vector<FabricInput> fabric_inputs(const World& world);
 /// A world on the device: buffers and the order in which kernels take them (stages/scene_args.clh, light_args.clh).
 class SceneDevice {
  public:
-  SceneDevice(const Device& device, const World& world, LocalStage stage = LocalStage::exact,
-              Joints joints = Joints::mitre);
+  SceneDevice(const Device& device, const World& world, LocalStage stage = LocalStage::exact, LeafForm form = {});
 
   /// Definitions for the kernels that follow from how the world lies on the device, beside those of its features.
   std::string options() const { return fabric_.tree.leaves.split() ? " -DW_SPLIT_LEAVES" : ""; }

@@ -105,6 +105,7 @@ IntegratorScene integrator_of(const JsonNode& node) {
   out.local_stage = node["local_stage"].text;
   out.joints = node["joints"].text;
   out.normals = node["normals"].text;
+  out.vertices = node["vertices"].text;
   out.precision = node["precision"].text;
   out.ply_shadows = node["ply_shadows"].text;
   out.light_choice = node["light_choice"].text;

@@ -53,6 +53,8 @@ Type integrator() {
        "how segments of a ply meet: cut square, with a sphere, or cut by the bisecting plane", "mitre"},
       {"normals", word({"flat", "linear", "rotation-minimising"}),
        "frames that plies are shaded with: of each segment, or interpolated between joints", "rotation-minimising"},
+      {"vertices", word({"quantised", "full"}),
+       "how stored curves keep their points: 16 bits a coordinate, or floats", "full"},
       {"precision", word({"float", "double"}), "arithmetic of rays and shading (needs a device with fp64)", "float"},
       {"ply_shadows", word({"attenuated", "opaque"}),
        "whether plies let the uncollided light of a lamp pass, as they do on paths", "attenuated"},

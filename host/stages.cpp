@@ -53,7 +53,9 @@ std::vector<Stage> geometry_stages(const Features& f) {
            .because = "bounds of procedural leaves",
            .before_rays = true},
           {.file = "pack.cl",
-           .kernels = {"pack_leaves", "place_leaves"},
+           .kernels = f.quantised_vertices
+                          ? std::vector<std::string>{"measure_leaves", "pack_leaves", "place_leaves"}
+                          : std::vector<std::string>{"pack_leaves", "place_leaves"},
            .used = f.mesh_warp || f.stored_lattice,
            .because = "leaves and bounds",
            .before_rays = true}};

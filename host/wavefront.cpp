@@ -38,6 +38,9 @@ Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Featu
       kernel_dir_(kernel_dir),
       pool_(std::max(64u, pool)),
       film_(device, camera.width, camera.height, features.aovs) {
+  const PlyTree& tree = scene.fabric().tree;
+  if (!tree.leaf_offset.empty() && tree.form.quantised() != features.quantised_vertices)
+    bug("wavefront: kernels and leaves differ in how vertices are kept");
   const auto vec = [&](Buffer<w_float4>& buffer, size_t count) {
     buffer = Buffer<w_float4>(device_, count);
     bytes_ += buffer.bytes();

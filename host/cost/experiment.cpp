@@ -1,7 +1,6 @@
 #include "host/cost/experiment.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "geom/error.h"
 #include "host/device_fault.h"
@@ -33,20 +32,6 @@ double segments_of(const Scene& scene, const Loaders& loaders) {
     sum += double(estimate_segments(mesh, load_pattern(fabric.pattern), fabric.spec));
   }
   return sum;
-}
-
-// Mean over the picture, weighed, of a variance per value.
-double weighed(const std::vector<float>& variance, const std::vector<double>& weights) {
-  double sum = 0;
-  for (size_t p = 0; p < weights.size(); ++p)
-    for (size_t c = 0; c < 3; ++c) sum += weights[p] * variance[3 * p + c];
-  return sum;
-}
-
-std::vector<Picture> pictures_of(const std::vector<Repetition>& repetitions) {
-  std::vector<Picture> out;
-  for (const Repetition& r : repetitions) out.push_back(r.picture);
-  return out;
 }
 
 }  // namespace
@@ -91,6 +76,15 @@ void Experiment::measure_geometry(size_t u) {
   measured_[u].result.radii = largest;
 }
 
+// What "auto" came to for the scene as it is holds for all of its levels: finer curves may be so many that they would
+// be held procedurally, and be other geometry.
+void Experiment::keep_storage(Scene& scene) {
+  const auto base = scenes_.prepare(levels_.units[0]);
+  for (size_t i = 0; i < scene.fabrics.size(); ++i)
+    if (Storage& storage = scene.fabrics[i].spec.storage; storage == Storage::automatic)
+      storage = base->world.fabrics[i].procedural ? Storage::procedural : Storage::stored;
+}
+
 // Lattices knit whole repeats: where the cloth's are none, stitches are larger or smaller, and pictures of them cannot
 // be compared. Empty: they are those of the scene.
 std::string Experiment::other_stitches(const Prepared& geometry) {
@@ -107,7 +101,7 @@ std::string Experiment::other_stitches(const Prepared& geometry) {
   return {};
 }
 
-// False when nobody wants to go on.
+// False when it was stopped.
 bool Experiment::survey_unit(size_t u) {
   const Unit& unit = levels_.units[u];
   Measured& m = measured_[u];
@@ -162,6 +156,7 @@ void Experiment::survey(const Tell& tell) {
       continue;
     }
     try {
+      if (u != 0) keep_storage(levels_.units[u].scene);
       // Of a given reference's own level the geometry alone is wanted, unless it has a row.
       const auto has_row = [&](const Level& row) { return row.unit == u; };
       if (u == levels_.reference && given_ && std::none_of(levels_.rows.begin(), levels_.rows.end(), has_row)) {
@@ -240,84 +235,6 @@ void Experiment::measure(const Tell& tell) {
     return true;
   });
   if (!done) ended_ = stop_requested() ? "stopped" : "the last repetitions took longer than planned";
-}
-
-void Experiment::analyse(size_t u, const std::vector<double>& weights, const std::vector<Picture>& reference,
-                         CostReport& out) {
-  Measured& m = measured_[u];
-  const std::vector<Repetition>& base = measured_[0].repetitions;
-  UnitResult& r = m.result;
-  r.repetitions = int(m.repetitions.size());
-  if (m.repetitions.empty()) {
-    if (r.left_out.empty()) r.left_out = "the time was over before its first repetition";
-    return;
-  }
-  const auto seconds = [&](const Repetition& one) { return device_.traits().cpu ? one.cpu : one.wall; };
-  const double paths = double(r.samples) * double(weights.size());
-  const double base_paths = double(measured_[0].result.samples) * double(weights.size());
-  std::vector<double> wall, cpu, time, noise;
-  for (size_t i = 0; i < m.repetitions.size(); ++i) {
-    const Repetition& one = m.repetitions[i];
-    const double variance = r.samples * weighed(one.variance, weights);
-    wall.push_back(1e9 * one.wall / paths);
-    cpu.push_back(1e9 * one.cpu / paths);
-    r.variance += variance / double(m.repetitions.size());
-    if (i >= base.size()) continue;
-    const double ratio = seconds(one) / paths / (seconds(base[i]) / base_paths);
-    const double base_variance = measured_[0].result.samples * weighed(base[i].variance, weights);
-    time.push_back(ratio);
-    if (base_variance > 0) noise.push_back(ratio * variance / base_variance);
-  }
-  r.wall_ns = spread_of(wall), r.cpu_ns = spread_of(cpu), r.time = spread_of(time);
-  if (!noise.empty()) r.equal_noise = spread_of(noise);
-  const std::vector<Picture> pictures = pictures_of(m.repetitions);
-  r.mean = mean_of(pictures);
-  r.bias = given_ ? relative_bias(pictures, given_->picture, given_->variance, weights)
-                  : relative_bias(pictures, reference, weights);
-  r.change = relative_bias(pictures, pictures_of(base), weights);
-  r.flip = flip_of(r.mean, out.reference, out.exposure);
-}
-
-CostReport Experiment::report() {
-  CostReport out;
-  out.device = device_.traits().name, out.driver = device_.traits().platform + ", " + device_.traits().driver;
-  out.time_kind = device_.traits().cpu ? "CPU" : "wall";
-  out.ended = ended_;
-  out.exposure = levels_.units[0].scene.film.exposure, out.view = levels_.units[0].scene.film.view;
-  out.base_settings = levels_.units[0].settings;
-  const std::vector<Repetition>& made = measured_[levels_.reference].repetitions;
-  std::vector<Picture> reference = pictures_of(made);
-  out.reference_made = !given_;
-  if (given_) {
-    out.reference = given_->picture;
-    out.reference_text = fmt::format("{}, {:g} samples a pixel: {}", given_->file, given_->samples, given_->accuracy);
-  } else if (!reference.empty()) {
-    out.reference = mean_of(reference);
-    out.reference_text =
-        fmt::format("{}{} repetitions of {} samples a pixel: {}", reference_note_, reference.size(),
-                    measured_[levels_.reference].result.samples, levels_.units[levels_.reference].settings);
-  }
-  if (out.reference.rgb.empty() || measured_[0].repetitions.empty())
-    user_error("cost: stopped before the scene and its reference were rendered once; nothing was written");
-  const std::vector<double> weights = relative_weights(out.reference);
-  if (given_) {
-    out.reference_noise = std::sqrt(weighed(given_->variance, weights));
-  } else {
-    double variance = 0;
-    for (const Repetition& r : made) variance += weighed(r.variance, weights);
-    out.reference_noise = std::sqrt(variance) / double(made.size());
-  }
-  if (reference.size() >= 2) {
-    std::vector<Picture> even, odd;
-    for (size_t i = 0; i < reference.size(); ++i) (i % 2 ? odd : even).push_back(reference[i]);
-    out.reference_flip = flip_of(mean_of(even), mean_of(odd), out.exposure);
-  }
-  for (size_t u = 0; u < measured_.size(); ++u) {
-    analyse(u, weights, reference, out);
-    out.results.push_back(measured_[u].result);
-  }
-  out.levels = std::move(levels_);
-  return out;
 }
 
 }  // namespace wale::cost

@@ -41,6 +41,7 @@ class Experiment {
     std::vector<Repetition> repetitions;
     UnitResult result;
   };
+  void keep_storage(Scene& scene);
   std::string other_stitches(const Prepared& geometry);
   bool survey_unit(size_t u);
   std::string too_large(const Unit& unit) const;

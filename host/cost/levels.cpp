@@ -1,5 +1,7 @@
 #include "host/cost/levels.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -14,8 +16,6 @@ namespace {
 // Options that launches and programs alone know of: what lies on the device is the same at all their levels.
 constexpr std::array kNoGeometry = {"normals",        "ply_lobes", "ply_shadows", "depth",
                                     "light_sampling", "precision", "math"};
-
-constexpr const char* kNoFabric = "no fabric";
 
 class Collector {
  public:
@@ -81,11 +81,23 @@ size_t place_of(const AccuracyOption& option, const std::string& level) {
   return option.levels.size();  // between levels, or mixed: not comparable
 }
 
-// The preset of that name, and what it does not mention at its most accurate.
-std::vector<std::string> reference_overrides() {
+// The finest lattice that is a level: the most accurate way to hold a fabric procedurally.
+constexpr int kFinestLattice = 4;
+
+// The preset of that name, and what it does not mention at its most accurate; loops as the scene has them.
+std::vector<std::string> reference_overrides(const Scene& scene) {
   std::vector<std::string> out;
   const AccuracyPreset& preset = accuracy_preset("reference");
   for (const AccuracyOption& option : accuracy_options()) {
+    if (option.name == "warp") {
+      for (size_t i = 0; i < scene.fabrics.size(); ++i) {
+        const FabricSpec& spec = scene.fabrics[i].spec;
+        const bool procedural = spec.storage == Storage::procedural;
+        out.push_back(fmt::format("fabrics.{}.lattice={}", i, procedural ? std::max(spec.lattice, kFinestLattice) : 0));
+      }
+      continue;
+    }
+    if (option.name == "strain") continue;  // loops of another shape are another cloth: it keeps the scene's
     const bool named = std::any_of(preset.levels.begin(), preset.levels.end(),
                                    [&](const auto& level) { return level.first == option.name; });
     if (!named) out.insert(out.end(), option.most_accurate().overrides.begin(), option.most_accurate().overrides.end());
@@ -93,6 +105,11 @@ std::vector<std::string> reference_overrides() {
   const std::vector<std::string> own = preset.overrides();
   out.insert(out.end(), own.begin(), own.end());
   return out;
+}
+
+bool any_procedural(const Scene& scene) {
+  return std::any_of(scene.fabrics.begin(), scene.fabrics.end(),
+                     [](const FabricScene& f) { return f.spec.storage == Storage::procedural; });
 }
 
 }  // namespace
@@ -128,17 +145,26 @@ Levels collect_levels(const std::filesystem::path& file, const std::vector<std::
   Collector collector(file, set, size);
   Levels& levels = collector.levels();
   collector.add("the scene", {});
-  levels.reference = collector.add("reference", reference_overrides());
+  levels.reference = collector.add("reference", reference_overrides(Scene(levels.units[0].scene)));
+  std::string silent;
   const auto scene_of = [&](size_t unit) -> const Scene& { return levels.units[unit].scene; };
   for (const AccuracyOption& option : accuracy_options()) {
     if (std::find(wanted.options.begin(), wanted.options.end(), option.name) == wanted.options.end()) continue;
-    if (option.at(scene_of(0)) == kNoFabric) continue;  // it says nothing of this scene
+    if (option.at(scene_of(0)) == kNoFabric) {  // it says nothing of this scene
+      silent += (silent.empty() ? "" : ", ") + option.name;
+      continue;
+    }
     const size_t at_reference = place_of(option, option.at(scene_of(levels.reference)));
     for (size_t i = 0; i < option.levels.size(); ++i) {
-      collector.add_row(option.name, option.levels[i].name, option.levels[i].overrides);
+      const AccuracyLevel& level = option.levels[i];
+      if (option.name == "warp" && level.name == "mesh" && any_procedural(scene_of(0)))
+        levels.rows.push_back({option.name, level.name, {}, "what is held procedurally has a lattice always"});
+      else
+        collector.add_row(option.name, level.name, level.overrides);
       levels.rows.back().beyond = i > at_reference;
     }
   }
+  if (levels.rows.empty() && !wanted.presets) user_error("--options {}: the scene has no fabric", silent);
   if (wanted.presets)
     for (const AccuracyPreset& preset : accuracy_presets())
       collector.add_row("preset", preset.name, preset.overrides());

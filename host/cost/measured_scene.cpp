@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <fstream>
 
 #include "host/memory_needs.h"
 
 namespace wale::cost {
 namespace {
-
-double cpu_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
 size_t channel(const Image& image, const std::string& name) {
   return size_t(std::find(image.channels.begin(), image.channels.end(), name) - image.channels.begin());
@@ -33,7 +30,7 @@ std::shared_ptr<const Prepared> MeasuredScenes::prepare(const Unit& unit) {
   const uint32_t pool = pool_of(device_.traits(), integrator, {});
   const std::vector<MemoryNeed> needs = memory_needs(made->world, features, pool, device_.traits());
   require_memory(device_, needs);
-  made->on_device = std::make_unique<SceneDevice>(device_, made->world, local_stage(integrator), joints(integrator));
+  made->on_device = std::make_unique<SceneDevice>(device_, made->world, local_stage(integrator), leaf_form(integrator));
   const FabricDevice& fabric = made->on_device->fabric();
   made->start = {made->world.seconds.at("knit"), fabric.warp_seconds + fabric.pack_seconds, fabric.build_seconds, 0, 0};
   for (const auto& [name, bytes] : made->on_device->bytes()) made->start.bytes += bytes;
@@ -55,7 +52,7 @@ void MeasuredScenes::forget(const Unit& unit) {
   }
 }
 
-Rendered MeasuredScenes::run(const Unit& unit, int samples, unsigned seed, std::function<void()> ready) {
+Rendered MeasuredScenes::run(const Unit& unit, int samples, unsigned seed) {
   const std::shared_ptr<const Prepared> geometry = prepare(unit);
   IntegratorScene integrator = unit.scene.integrator;
   integrator.seed = seed;
@@ -63,15 +60,13 @@ Rendered MeasuredScenes::run(const Unit& unit, int samples, unsigned seed, std::
   options.spp = samples;
   options.aovs = true;  // as for an .exr, so that first hits and pictures come from the same programs
   options.kernel_dir = kernel_dir_;
-  options.ready = std::move(ready);
   return render(device_, geometry->world, *geometry->on_device, integrator, options);
 }
 
 Repetition MeasuredScenes::render_once(const Unit& unit, int samples, unsigned seed) {
-  double begun = 0;
-  const Rendered r = run(unit, samples, seed, [&] { begun = cpu_seconds(); });
+  const Rendered r = run(unit, samples, seed);
   Repetition out;
-  out.cpu = cpu_seconds() - begun;
+  out.cpu = r.cpu_seconds;
   out.wall = r.seconds;
   out.program_seconds = r.program_seconds;
   out.nan_samples = r.counts.events[W_EVENT_NAN];
@@ -89,7 +84,7 @@ Repetition MeasuredScenes::render_once(const Unit& unit, int samples, unsigned s
 }
 
 Hits MeasuredScenes::first_hits(const Unit& unit, unsigned seed) {
-  const Rendered r = run(unit, 1, seed, {});
+  const Rendered r = run(unit, 1, seed);
   const size_t stride = r.image.channels.size(), place = channel(r.image, "position.X"),
                ply = channel(r.image, "ply.id"), covered = channel(r.image, "coverage");
   Hits out;

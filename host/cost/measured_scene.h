@@ -56,7 +56,7 @@ class MeasuredScenes {
   Hits first_hits(const Unit& unit, unsigned seed);
 
  private:
-  Rendered run(const Unit& unit, int samples, unsigned seed, std::function<void()> ready);
+  Rendered run(const Unit& unit, int samples, unsigned seed);
 
   const Device& device_;
   const Loaders& loaders_;

@@ -76,8 +76,13 @@ std::string table(const std::vector<Column>& columns, const std::vector<std::vec
 std::string row_note(const CostReport& report, const Level& row) {
   if (report.is_reference(row)) return "the reference";
   if (row.own) return "the scene as it is";
-  if (row.beyond) return "beyond the reference";
-  return {};
+  std::string note = row.beyond ? "beyond the reference" : "";
+  const UnitResult* r = report.result(row);
+  // Quasi-random points let noise fall faster than 1 / samples, which times to equal noise suppose.
+  if (r && r->samples != report.results[0].samples)
+    note += fmt::format("{}{} samples a picture, the scene {}", note.empty() ? "" : "; ", r->samples,
+                        report.results[0].samples);
+  return note;
 }
 
 std::string csv_text(const std::string& text) {

@@ -6,5 +6,5 @@
 #define W_JOINTS_MITRE 2   /* cut by the bisecting plane; square with a sphere where that does not fit, and at ends */
 /* In W_LEAF_LAYOUT, beside its S: every joint of these plies has a sphere. */
 #define W_LAYOUT_CAPSULES 0x80000000u
-#define W_LAYOUT_STRIDE(layout) ((layout) >> 16 & 0x7fffu)
+#define W_LAYOUT_STRIDE(layout) ((layout) >> 16 & 0x3fffu)
 #endif

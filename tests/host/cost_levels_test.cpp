@@ -101,10 +101,26 @@ TEST_F(CostLevels, ALatticeThatDoesNotFitIsARowWithTheReason) {
 TEST_F(CostLevels, ASceneWithoutClothHasNoRowsOfCloth) {
   const Levels levels = of("");
   for (const Level& row : levels.rows) {
-    EXPECT_NE(row.option, "curves");
-    EXPECT_NE(row.option, "detail");
+    for (const char* cloth : {"curves", "detail", "warp", "joints", "normals", "vertices", "ply_lobes", "ply_shadows"})
+      EXPECT_NE(row.option, cloth);
   }
   EXPECT_GE(levels.rows.size(), 4u);
+  EXPECT_EQ(user_message([&] { of("", "joints,curves"); }), "--options curves, joints: the scene has no fabric");
+}
+
+// A fabric held procedurally has no level "mesh", and the reference does not coarsen its lattice.
+TEST_F(CostLevels, TheReferenceOfAProceduralFabricHasTheFinestLattice) {
+  const std::string square = "{\"generator\": \"swatch\", \"width\": 20, \"height\": 20}";
+  const auto at_reference = [&](const std::vector<std::string>& set) {
+    const Levels levels = of(square, "warp", set);
+    return accuracy_option("warp").at(levels.units[levels.reference].scene);
+  };
+  EXPECT_EQ(at_reference({"fabrics.*.storage=procedural"}), "4");
+  EXPECT_EQ(at_reference({"fabrics.*.storage=procedural", "fabrics.*.lattice=8"}), "8");
+  EXPECT_EQ(at_reference({"fabrics.*.lattice=2"}), "mesh");
+  const Levels levels = of(square, "warp", {"fabrics.*.storage=procedural"});
+  EXPECT_EQ(levels.rows.back().level, "mesh");
+  EXPECT_FALSE(levels.rows.back().unit);
 }
 
 TEST_F(CostLevels, PicturesAreSmallUnlessASizeIsGiven) {

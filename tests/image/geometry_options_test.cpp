@@ -69,6 +69,15 @@ TEST(GeometryOptions, DoubleIsTheSamePictureWithinNoise) {
   EXPECT_GT(different_pixels(a, b), size_t(a.width));
 }
 
+TEST(GeometryOptions, QuantisedVerticesAreTheSamePictureWithinNoise) {
+  const Picture quantised = take(cloth({"integrator.vertices=quantised"}), 32, 1);
+  const Image other_seed = take(cloth({}), 32, 2).image;
+  size_t tests = 0;
+  const double p = smallest_p(quantised.image, other_seed, tests);
+  EXPECT_GT(p, sidak(0.01, tests));
+  EXPECT_EQ(bad_events(quantised.counts), 0u);
+}
+
 TEST(GeometryOptions, DoubleNeedsADeviceThatHasIt) {
   DeviceTraits traits = device().traits();
   traits.fp64 = false;

@@ -22,7 +22,7 @@ Studio::Studio(const Device& device, const Scene& scene)
       integrator_(scene.integrator),
       world_(build_world(scene, Loaders{[](const auto& file) { return read_mesh(file); },
                                         [](const auto& file) { return read_image(file, true); }})),
-      on_device_(device, world_, local_stage(scene.integrator), joints(scene.integrator)) {}
+      on_device_(device, world_, local_stage(scene.integrator), leaf_form(scene.integrator)) {}
 
 Rendered Studio::take(const RenderOptions& options, unsigned seed) const {
   IntegratorScene integrator = integrator_;
@@ -161,6 +161,21 @@ double smallest_p(const Image& a, const Image& b, size_t& tests) {
         const double dof = (s + u) * (s + u) / (s * s / 7 + u * u / 7);
         p = std::min(p, p_of(v[c] - w[c], s + u, dof));
       }
+  return p;
+}
+
+double smallest_p_of_means(const Image& a, const Image& b) {
+  double p = 1;
+  for (int c = 0; c < 3; ++c) {
+    double difference = 0, variance = 0;
+    for (int y = 0; y < a.height; ++y)
+      for (int x = 0; x < a.width; ++x) {
+        const float *v = a.at(x, y), *w = b.at(x, y);
+        difference += double(v[c]) - w[c];
+        variance += double(v[3 + c]) + w[3 + c];
+      }
+    p = std::min(p, p_of(difference, variance, 7.0 * a.width * a.height));
+  }
   return p;
 }
 

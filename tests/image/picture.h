@@ -58,6 +58,8 @@ double student_p(double t, double dof);
 double smallest_p(const Image& image, double expected, size_t& tests);
 /// The same of "two pictures have the same mean" (Welch).
 double smallest_p(const Image& a, const Image& b, size_t& tests);
+/// Of "the means over all pixels are the same", the least of the channels: finds what is too little for any one pixel.
+double smallest_p_of_means(const Image& a, const Image& b);
 
 /// Significance per test so that `tests` independent ones together have level `alpha`.
 double sidak(double alpha, size_t tests);

@@ -85,9 +85,9 @@ __kernel void surfaces(PARAMS, __global const TestHit* hits, __global const floa
 )";
 
 FabricDevice upload(const Device& device, const Fabric& fabric, float tau, LocalStage stage, bool updatable,
-                    Joints joints) {
+                    LeafForm form) {
   const FabricInput input{&fabric, 0, tau};
-  return upload_fabrics(device, {&input, 1}, {0, 0, 0}, stage, updatable, joints);
+  return upload_fabrics(device, {&input, 1}, {0, 0, 0}, stage, updatable, form);
 }
 
 }  // namespace
@@ -104,13 +104,13 @@ std::vector<PlyPatch> patches_of(const Fabric& fabric, float tau) {
 }
 
 FabricTracer::FabricTracer(const Device& device, const Fabric& fabric, float tau, LocalStage stage, bool updatable,
-                           Joints joints)
+                           LeafForm form)
     : device_(device),
       knit_(fabric),
       stage_(stage),
       fibres_(fabric.report.fibres > 0),
       procedural_(fabric.procedural),
-      fabric_(upload(device, fabric, tau, stage, updatable, joints)),
+      fabric_(upload(device, fabric, tau, stage, updatable, form)),
       leaves_(fabric_.tree.leaves.read(device)),
       counters_(device, W_EVENT_COUNT) {
   counters_.fill(device, 0);
@@ -123,7 +123,8 @@ cl::Kernel FabricTracer::bound(const char* name, const Buffer<Ray>& rays, size_t
   const std::string options =
       fmt::format("-DW_HAS_PLIES {} -DW_LOCAL_STAGE={}{}", lanes, int(stage_), fibres_ ? " -DW_HAS_FIBRES" : "") +
       (procedural_ ? " -DW_HAS_PROCEDURAL" : "") + (simt ? " -DW_SIMT" : "") +
-      (fabric_.tree.leaves.split() ? " -DW_SPLIT_LEAVES" : "");
+      (fabric_.tree.leaves.split() ? " -DW_SPLIT_LEAVES" : "") +
+      (fabric_.tree.form.quantised() ? " -DW_QUANTISED_VERTICES" : "");
   auto& program = programs_[twice];
   if (!program()) program = build_program_text(device_, std::string(kTraceTypes) + kKernels, options);
   cl::Kernel kernel(program, name);

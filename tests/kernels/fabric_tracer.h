@@ -13,7 +13,7 @@ class FabricTracer {
   /// `fabric` must outlive the tracer. The cell stages need a tree and lists of their own: `stage` says for which one
   /// the fabric is uploaded.
   FabricTracer(const Device& device, const Fabric& fabric, float tau = -1, LocalStage stage = LocalStage::exact,
-               bool updatable = false, Joints joints = Joints::mitre);
+               bool updatable = false, LeafForm form = {});
   /// Carries an updatable fabric on to a moved mesh: see update_fabrics().
   void move(std::span<const float> positions, std::span<const float> normals) {
     update_fabrics(device_, fabric_, positions, normals);

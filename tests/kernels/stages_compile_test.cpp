@@ -17,7 +17,7 @@ TEST_P(StagesCompile, InAllVariants) {
         "-DW_LANES=16 -DW_LOCAL_STAGE=2" + all, "-DW_LANES=16 -DW_LOCAL_STAGE=0" + all,
         "-DW_LANES=16 -DW_LOCAL_STAGE=0 -DW_HAS_FIBRES" + all, "-DW_LANES=16 -DW_HAS_PROCEDURAL -DW_HAS_FIBRES" + all,
         "-DW_LANES=1 -DW_DOUBLE -DW_HAS_PROCEDURAL -DW_HAS_FIBRES -DW_HAS_DETAIL" + all,
-        "-DW_LANES=1 -DW_HAS_PROCEDURAL" + all, "-DW_LANES=16 -DW_SPLIT_LEAVES -DW_HAS_PROCEDURAL" + all,
+        "-DW_LANES=1 -DW_HAS_PROCEDURAL" + all, "-DW_LANES=16 -DW_QUANTISED_VERTICES -DW_HAS_FIBRES" + all, "-DW_LANES=16 -DW_SPLIT_LEAVES -DW_HAS_PROCEDURAL" + all,
         "-DW_LANES=1 -DW_SIMT -DW_SPLIT_LEAVES -DW_HAS_PROCEDURAL -DW_HAS_FIBRES" + all}) {
     const cl::Program program = build_program(device, GetParam(), options);
     EXPECT_EQ(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.id()).find("warning"), std::string::npos)

@@ -220,11 +220,11 @@ Strands stockinette(uint32_t rows, uint32_t loops, uint32_t steps_per_loop, doub
   return s;
 }
 
-Tracer::Tracer(const Device& device, const Strands& strands, Joints joints)
+Tracer::Tracer(const Device& device, const Strands& strands, LeafForm form)
     : device_(device),
       frames_(device, strands.frames),
       tree_(build_ply_tree(by_lanes(device), strands.patches, Buffer<float>(device, strands.positions), {}, false, {},
-                           joints)),
+                           form)),
       quantised_(device, words_only(tree_.nodes.read(device)), tree_.nodes),
       leaves_(tree_.leaves.read(device)),
       counters_(device, W_COUNTER_COUNT) {
@@ -232,7 +232,7 @@ Tracer::Tracer(const Device& device, const Strands& strands, Joints joints)
 }
 
 cl::Kernel Tracer::bound(const std::string& options, const char* name, const Buffer<Ray>& rays) const {
-  cl::Kernel kernel(program(options), name);
+  cl::Kernel kernel(program(options + (tree_.form.quantised() ? " -DW_QUANTISED_VERTICES" : "")), name);
   const bool simt = options.find("W_SIMT") != std::string::npos;
   kernel.setArg(0, simt ? quantised_.nodes().cl() : tree_.nodes.cl());
   kernel.setArg(1, tree_.leaves.cl());

@@ -58,7 +58,7 @@ using Surface = SurfaceOf<float>;
 /// Strands on the device, traced with given build options.
 class Tracer {
  public:
-  Tracer(const Device& device, const Strands& strands, Joints joints = Joints::mitre);
+  Tracer(const Device& device, const Strands& strands, LeafForm form = {});
   /// With -DW_SIMT in `options`, down the quantised nodes.
   std::vector<Hit> trace(const std::vector<Ray>& rays, const std::string& options);
   /// Nearest hits of packets of 16 rays in the order given; `occluded` is left 0.
