@@ -228,6 +228,22 @@ TEST(Strain, BeyondTheTableItsBorderIsTakenAndCounted) {
   expect_same_bits(beyond, at_border);
 }
 
+// The yarn's own scale is the one through the cloth: a tile drawn out by the gauge is strained, one made larger is not.
+TEST(Strain, AGaugeOfAnotherAspectIsAStrain) {
+  const BaseMesh mesh = make_swatch(0.04, 0.024, 6, 4);
+  const Pattern tile = straining_tile(kReach);
+  FabricSpec spec = strained_spec(LoopStrain::relaxed);
+  spec.scale.kind = FabricScale::Kind::gauge;
+  spec.scale.gauge = {1 / (1.5 * tile.period.x), 1 / (1.5 * tile.period.y)};
+  const Fabric larger = knit_fabric(mesh, tile, spec, 1);
+  EXPECT_EQ(larger.report.strain.least, dvec2(0));
+  EXPECT_EQ(larger.report.strain.most, dvec2(0));
+  spec.scale.gauge = {1 / (1.44 * tile.period.x), 1 / (1.0 * tile.period.y)};
+  const Fabric wider = knit_fabric(mesh, tile, spec, 1);
+  EXPECT_NEAR(wider.report.strain.least.x, 0.2, 1e-6);  // sqrt(1.44), and its inverse along wales
+  EXPECT_NEAR(wider.report.strain.most.y, 1 / 1.2 - 1, 1e-6);
+}
+
 TEST(Strain, TheSameOnAnyNumberOfThreads) {
   const BaseMesh mesh = striped(0.03, 10, [](int c) { return 0.04 * c; });
   const Pattern tile = straining_tile(kReach);
