@@ -59,6 +59,13 @@ inline dvec3 place(const Fabric& fabric, size_t vertex) {
   return warp_point(fabric.mesh, {a.triangle, a.b1, a.b2, 0}, a.height);
 }
 
+/// UV of a vertex, in the plane of its triangle.
+inline dvec2 uv_of(const Fabric& fabric, size_t vertex) {
+  const Anchor& a = fabric.anchors[vertex];
+  const auto& uv = fabric.mesh.uv[a.triangle];
+  return (1 - double(a.b1) - a.b2) * uv[0] + double(a.b1) * uv[1] + double(a.b2) * uv[2];
+}
+
 inline bool same_bits(const Anchor& a, const Anchor& b) {
   return a.triangle == b.triangle && a.b1 == b.b1 && a.b2 == b.b2 && a.height == b.height && a.nx == b.nx &&
          a.ny == b.ny && a.nz == b.nz && a.length == b.length;
