@@ -152,6 +152,17 @@ TEST(Strain, ATubeIsClosedAtItsSeam) {
         EXPECT_TRUE(a.triangle == b.triangle && a.b1 == b.b1 && a.b2 == b.b2 && a.height == b.height && a.nx == b.nx &&
                     a.ny == b.ny && a.nz == b.nz);
       }
+      // The frame where the yarn begins and ends is square to the edges on both sides.
+      const double girth = relaxed.charts[0].joins.at(0).x;
+      const auto edge = [&](size_t v) {
+        dvec2 uv = uv_of(relaxed, v + 1) - uv_of(relaxed, v);
+        uv.x -= girth * std::round(uv.x / girth);
+        return glm::normalize(dvec3(uv, relaxed.anchors[v + 1].height - relaxed.anchors[v].height));
+      };
+      for (const size_t v : {first + 1, last - 1}) {
+        const Anchor& a = relaxed.anchors[v];
+        EXPECT_LT(std::abs(glm::dot(dvec3(a.nx, a.ny, a.nz), glm::normalize(edge(v - 1) + edge(v)))), 1e-3);
+      }
     }
   }
   EXPECT_GT(closed, 0u);
