@@ -42,7 +42,7 @@ struct FabricSpec {
   Detail detail = Detail::maps;
   FibreRecipe fibres;  ///< what its plies are made of
   FlyawaySpec flyaways;
-  bool places = false;  ///< fill Fabric::place
+  bool places = false;     ///< fill Fabric::place
   bool cell_lists = true;  ///< fill Fabric::cell_triangles and cell_segments
   LoopStrain strain = LoopStrain::affine;
   Storage storage = Storage::automatic;
@@ -133,10 +133,10 @@ struct Fabric {
   std::vector<Anchor> anchors;     ///< per vertex
   std::vector<StrandPlace> place;  ///< where FabricSpec::places: sample k of a run at first_vertex / plies + k
   std::vector<uint32_t> chart_of_triangle;
-  std::vector<Patch> patches;  ///< sorted by cell
-  std::vector<UvGrid> grids;   ///< per chart
-  Csr cell_triangles;          ///< where FabricSpec::cell_lists: triangles that cover the cell (UV overlap)
-  Csr cell_segments;           ///< and segments that touch it: vertex ids of their starts
+  std::vector<Patch> patches;         ///< sorted by cell
+  std::vector<UvGrid> grids;          ///< per chart
+  Csr cell_triangles;                 ///< where FabricSpec::cell_lists: triangles that cover the cell (UV overlap)
+  Csr cell_segments;                  ///< and segments that touch it: vertex ids of their starts
   std::vector<LatticeChart> lattice;  ///< of a regular cloth, in place of runs, anchors, patches and cells
   bool procedural = false;            ///< it is to stay a lattice
   double fibre_twist = 0;             ///< of a lattice: FibreRecipe::twist
@@ -150,6 +150,7 @@ struct Fabric {
     StrainReport strain;              ///< LoopStrain::relaxed: otherwise empty
     double worst_partner_distance = 0;   ///< metres in the pattern
     std::vector<ivec2> snapped_repeats;  ///< per joined chart, whole tiles across the join
+    std::vector<dvec2> tile_phase;       ///< per knitted chart, where in a tile its UV begins, [0, 1)
     dvec2 tile_metres{0, 0};             ///< size of one tile in the cloth
     dvec2 stitch_metres{0, 0};
     bool mirrored = false;

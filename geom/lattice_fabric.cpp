@@ -77,6 +77,7 @@ Fabric knit_lattice(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spe
     area += share;
     report.tile_metres += share * tile;
     report.snapped_repeats.push_back(tiles);
+    report.tile_phase.emplace_back(0);
     report.mirrored = report.mirrored || chart.mirrored;
     fabric.lattice.push_back(std::move(made));
   }

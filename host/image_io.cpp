@@ -156,6 +156,8 @@ void write_image(const Image& image, const std::filesystem::path& file, double e
 
 void require_writable(const std::filesystem::path& file) {
   const std::string suffix = suffix_of(file);
+  if (!file.has_filename())
+    user_error("{}: this names a folder; give the name of a picture, .exr or .png", file.string());
   if (suffix != ".exr" && suffix != ".png")
     user_error("{}: images are written as .exr or .png, not \"{}\"", file.string(), suffix);
   require_image_coder();

@@ -85,18 +85,28 @@ void Experiment::keep_storage(Scene& scene) {
       storage = base->world.fabrics[i].procedural ? Storage::procedural : Storage::stored;
 }
 
-// Lattices knit whole repeats: where the cloth's are none, stitches are larger or smaller, and pictures of them cannot
-// be compared. Empty: they are those of the scene.
+// Lattices knit whole repeats from the corner of the UVs on: where the cloth's are none, stitches are larger, smaller
+// or elsewhere, and pictures of them cannot be compared. Empty: they are those of the scene.
 std::string Experiment::other_stitches(const Prepared& geometry) {
   const auto base = scenes_.prepare(levels_.units[0]);
+  constexpr double kSame = 1e-3;
   for (size_t i = 0; i < base->world.fabrics.size(); ++i) {
-    const dvec2 there = base->world.fabrics[i].report.tile_metres, here = geometry.world.fabrics[i].report.tile_metres;
-    constexpr double kSame = 1e-3;
+    const Fabric::Report &scene = base->world.fabrics[i].report, &own = geometry.world.fabrics[i].report;
+    const std::string& name = base->world.fabrics[i].name;
+    const dvec2 there = scene.tile_metres, here = own.tile_metres;
     if (glm::length(here / there - 1.0) > kSame)
       return fmt::format(
           "it knits whole tiles of {:.4g} x {:.4g} mm over fabric \"{}\" instead of {:.4g} x {:.4g}: "
           "other stitches, another picture; give whole \"repeats\" to compare it",
-          1e3 * here.x, 1e3 * here.y, base->world.fabrics[i].name, 1e3 * there.x, 1e3 * there.y);
+          1e3 * here.x, 1e3 * here.y, name, 1e3 * there.x, 1e3 * there.y);
+    for (size_t c = 0; c < std::min(scene.tile_phase.size(), own.tile_phase.size()); ++c) {
+      const dvec2 moved = own.tile_phase[c] - scene.tile_phase[c];
+      if (glm::length(moved - glm::round(moved)) > kSame)
+        return fmt::format(
+            "its tiles lie {:.2g} x {:.2g} tiles from those of the scene on fabric \"{}\": another picture; a cloth "
+            "whose UVs begin at a whole tile can be compared",
+            std::abs(moved.x), std::abs(moved.y), name);
+    }
   }
   return {};
 }

@@ -1,4 +1,6 @@
 // Levels whose bias and price are known to differ, measured on a small scene.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "geom/base_mesh.h"
@@ -101,6 +103,25 @@ TEST_F(CostExperiment, AGivenReferenceIsCompared) {
   EXPECT_FALSE(report.reference_made);
   EXPECT_LT(find(report, "depth", "4").bias.relative_mse, 0.1 * find(report, "depth", "0").bias.relative_mse);
   EXPECT_TRUE(find(report, "depth", "0").bias.resolved());
+}
+
+// A lattice lays its tiles from the corner of the UVs on; stored yarns lie as tiles from UV 0 on do.
+TEST_F(CostExperiment, TilesThatLieElsewhereAreNotCompared) {
+  const auto square = [&](double begin) {  // 20 mm, one unit of UV, 8 x 8 tiles
+    std::string text;
+    for (const auto& [x, y] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}})
+      text += fmt::format("v {} {} 0\nvt {} {}\n", 0.02 * x - 0.01, 0.02 * y - 0.01, begin + x, y);
+    return folder_.write("square.obj", text + "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n").string();
+  };
+  for (const double begin : {0.0, 0.0625}) {
+    const CostReport report = run(
+        "warp", kSeconds / 4, {"fabrics.0.mesh=" + square(begin), "fabrics.0.gauge={\"wales\": 40, \"courses\": 40}"});
+    for (const Level& row : report.levels.rows) {
+      const std::string why = report.results.at(*row.unit).left_out;
+      EXPECT_EQ(why.find("its tiles lie 0.5 x 0 tiles from") != std::string::npos, begin > 0 && row.level != "mesh")
+          << row.level << ": " << why;
+    }
+  }
 }
 
 // Where the preset "reference" has no room, the scene itself takes its part, and the report says so.

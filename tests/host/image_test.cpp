@@ -240,6 +240,8 @@ TEST(Image, UnwritablePlacesAreRefusedBeforeRendering) {
   TemporaryFolder folder;
   EXPECT_EQ(user_message([] { require_writable("/no/such/folder/a.png"); }),
             "/no/such/folder/a.png: the folder /no/such/folder does not exist; make it first");
+  EXPECT_EQ(user_message([] { require_writable("out/"); }),
+            "out/: this names a folder; give the name of a picture, .exr or .png");
   EXPECT_EQ(user_message([] { require_writable("a.jpg"); }), "a.jpg: images are written as .exr or .png, not \".jpg\"");
   std::filesystem::create_directory(folder / "dir.exr");
   EXPECT_TRUE(user_message([&] { require_writable(folder / "dir.exr"); }).find("this is a folder") !=
