@@ -99,7 +99,8 @@ Fabric knit_fabric(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spec
     const dvec2 first_tile = chart.uv_min / chart_map.tile_uv;
     fabric.report.tile_phase.push_back(first_tile - glm::floor(first_tile));
     const FlatKnit knit(pattern, partners, map.yarn, chart_map.scale, chart_map.rect);
-    cut_yarns(fabric, {fabric, c, chart_map, spec, bundle.get(), map.flyaway_radius}, knit, threads, uv);
+    cut_yarns(fabric, {fabric, c, chart_map, spec, bundle.get(), map.flyaway_radius,
+                       spec.strain == LoopStrain::relaxed ? &pattern.strains : nullptr}, knit, threads, uv);
   }
   if (fabric.runs.empty()) user_error("fabric '{}': no yarn lies on the cloth; give a finer scale", spec.name);
 

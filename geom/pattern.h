@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "geom/strain_table.h"
 #include "geom/vec.h"
 
 namespace wale {
@@ -26,6 +27,7 @@ struct Pattern {
   ivec2 stitches{0, 0};    ///< wales and courses in one tile; estimated by the reader where the file does not say
   CurveKind kind = CurveKind::interpolating;
   std::vector<PatternCurve> curves;
+  StrainTable strains;  ///< empty where it is not known how the tile gives way
 };
 
 /// What a file does not say; zero means "take it from the file, or recover it".

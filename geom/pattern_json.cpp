@@ -1,5 +1,7 @@
 // Wale's own tile: {"wale_tile": 1, "name", "period": [x, y], "yarn_radius", "stitches": [wales, courses],
-// "kind": "interpolating" or "bspline", "curves": [{"points": [[x, y, z], ...], "closed": false}]}, in metres.
+// "kind": "interpolating" or "bspline", "curves": [{"points": [[x, y, z], ...], "closed": false}],
+// "strains": {"course": [a, ...], "wale": [b, ...], "offsets": [[[x, y, z], ...], ...]}}, in metres; strains.offsets as
+// in StrainTable.
 #include <algorithm>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -81,13 +83,35 @@ Json parse(std::string_view text, const std::string& file) {
   }
 }
 
+std::vector<dvec3> read_points(const Value& value) {
+  std::vector<dvec3> points;
+  for (const Value& row : value.items()) {
+    const std::vector<Value> p = row.items(3);
+    points.emplace_back(p[0].number(), p[1].number(), p[2].number());
+  }
+  return points;
+}
+
+nlohmann::ordered_json points_json(const std::vector<dvec3>& points) {
+  auto rows = nlohmann::ordered_json::array();
+  for (const dvec3& p : points) rows.push_back({p.x, p.y, p.z});
+  return rows;
+}
+
+StrainTable read_strains(const Value& value) {
+  value.only({"course", "wale", "offsets"});
+  StrainTable table;
+  for (const Value& strain : value["course"].items()) table.course.push_back(strain.number());
+  for (const Value& strain : value["wale"].items()) table.wale.push_back(strain.number());
+  for (const Value& shape : value["offsets"].items()) table.offsets.push_back(read_points(shape));
+  if (table.empty()) value["course"].complain("no strains; give at least 0, or leave the key \"strains\" out");
+  return table;
+}
+
 PatternCurve read_curve(const Value& value) {
   value.only({"points", "closed"});
   PatternCurve curve;
-  for (const Value& row : value["points"].items()) {
-    const std::vector<Value> p = row.items(3);
-    curve.points.emplace_back(p[0].number(), p[1].number(), p[2].number());
-  }
+  curve.points = read_points(value["points"]);
   if (value.has("closed")) curve.closed = value["closed"].truth();
   return curve;
 }
@@ -98,7 +122,7 @@ Pattern parse_pattern_json(std::string_view text, const std::filesystem::path& p
   const std::string file = path.string();
   const Json json = parse(text, file);
   const Value root(file, "", json);
-  root.only({"wale_tile", "name", "period", "yarn_radius", "stitches", "kind", "curves"});
+  root.only({"wale_tile", "name", "period", "yarn_radius", "stitches", "kind", "curves", "strains"});
   if (root["wale_tile"].whole() != 1) root["wale_tile"].complain("only version 1 is known");
   Pattern pattern;
   if (root.has("name")) pattern.name = root["name"].text();
@@ -121,6 +145,7 @@ Pattern parse_pattern_json(std::string_view text, const std::filesystem::path& p
     root["kind"].complain(fmt::format("'{}' is not known; choose interpolating or bspline", kind));
   pattern.kind = kind == "bspline" ? CurveKind::bspline : CurveKind::interpolating;
   for (const Value& curve : root["curves"].items()) pattern.curves.push_back(read_curve(curve));
+  if (root.has("strains")) pattern.strains = read_strains(root["strains"]);
   return pattern;
 }
 
@@ -135,9 +160,16 @@ void write_pattern_json(const Pattern& pattern, const std::filesystem::path& fil
   json["curves"] = Json::array();
   for (const PatternCurve& curve : pattern.curves) {
     nlohmann::ordered_json item;
-    for (const dvec3& p : curve.points) item["points"].push_back({p.x, p.y, p.z});
+    item["points"] = points_json(curve.points);
     item["closed"] = curve.closed;
     json["curves"].push_back(std::move(item));
+  }
+  if (const StrainTable& strains = pattern.strains; !strains.empty()) {
+    nlohmann::ordered_json& item = json["strains"];
+    item["course"] = strains.course;
+    item["wale"] = strains.wale;
+    item["offsets"] = nlohmann::ordered_json::array();
+    for (const auto& shape : strains.offsets) item["offsets"].push_back(points_json(shape));
   }
   write_whole_file(file, json.dump(1) + "\n");
 }

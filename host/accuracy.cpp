@@ -65,6 +65,12 @@ const std::vector<AccuracyOption>& table() {
            return f.lattice ? std::to_string(f.lattice) : f.storage == Storage::procedural ? "1" : "mesh";
          });
        }},
+      {"strain", "loops where the cloth is stretched: scaled with it, or as the tile's table of strains says",
+       words("fabrics.*.strain", {"affine", "relaxed"}),
+       [](const Scene& s) {
+         return of_fabrics(
+             s, [](const FabricSpec& f) { return f.strain == LoopStrain::relaxed ? "relaxed" : "affine"; });
+       }},
       {"normals", "frames that plies are shaded with: of each segment, or interpolated between joints",
        words("integrator.normals", {"flat", "linear", "rotation-minimising"}),
        [](const Scene& s) { return of_plies(s, s.integrator.normals); }},
@@ -133,7 +139,8 @@ const AccuracyOption& accuracy_option(const std::string& name) {
 }
 
 std::span<const AccuracyPreset> accuracy_presets() {
-  // The others as changes to it. None names a level of "warp": a fabric that is held procedurally needs its lattice.
+  // The others as changes to it. None names a level of "warp": a fabric that is held procedurally needs its lattice;
+  // nor of "strain": most tiles have no table.
   const Levels final = {{"local_stage", "exact"},
                         {"curves", "0.05"},
                         {"joints", "mitre"},

@@ -84,7 +84,7 @@ size_t place_of(const AccuracyOption& option, const std::string& level) {
 // The finest lattice that is a level: the most accurate way to hold a fabric procedurally.
 constexpr int kFinestLattice = 4;
 
-// The preset of that name, and what it does not mention at its most accurate.
+// The preset of that name, and what it does not mention at its most accurate; loops as the scene has them.
 std::vector<std::string> reference_overrides(const Scene& scene) {
   std::vector<std::string> out;
   const AccuracyPreset& preset = accuracy_preset("reference");
@@ -97,6 +97,7 @@ std::vector<std::string> reference_overrides(const Scene& scene) {
       }
       continue;
     }
+    if (option.name == "strain") continue;  // loops of another shape are another cloth: it keeps the scene's
     const bool named = std::any_of(preset.levels.begin(), preset.levels.end(),
                                    [&](const auto& level) { return level.first == option.name; });
     if (!named) out.insert(out.end(), option.most_accurate().overrides.begin(), option.most_accurate().overrides.end());

@@ -34,13 +34,13 @@ TEST(Accuracy, APlainSceneStandsAtTheFinalPreset) {
   for (const auto& [option, level] : preset.levels) EXPECT_EQ(accuracy_option(option).at(plain), level) << option;
 }
 
-// But of how a fabric is held, which they leave to the scene.
+// But of how a fabric is held, and of whether its tile has a table of strains, which they leave to the scene.
 TEST(Accuracy, PresetsNameOneLevelOfEveryOption) {
   for (const AccuracyPreset& preset : accuracy_presets()) {
     const Scene scene = with(preset.overrides());
     size_t i = 0;
     for (const AccuracyOption& option : accuracy_options()) {
-      if (option.name == "warp") continue;
+      if (option.name == "warp" || option.name == "strain") continue;
       ASSERT_LT(i, preset.levels.size()) << preset.name;
       const auto& [name, level] = preset.levels[i++];
       EXPECT_EQ(name, option.name) << preset.name;
@@ -56,6 +56,15 @@ TEST(Accuracy, PresetsKeepTheLatticeOfAFabric) {
     std::vector<std::string> set = preset.overrides();
     set.insert(set.begin(), {"fabrics.*.storage=procedural", "fabrics.*.lattice=4"});
     EXPECT_EQ(accuracy_option("warp").at(with(set)), "4") << preset.name;
+  }
+}
+
+TEST(Accuracy, PresetsKeepTheStrainOfAFabric) {
+  for (const AccuracyPreset& preset : accuracy_presets()) {
+    std::vector<std::string> set = preset.overrides();
+    EXPECT_EQ(accuracy_option("strain").at(with(set)), "affine") << preset.name;
+    set.insert(set.begin(), "fabrics.*.strain=relaxed");
+    EXPECT_EQ(accuracy_option("strain").at(with(set)), "relaxed") << preset.name;
   }
 }
 

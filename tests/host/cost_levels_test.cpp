@@ -76,6 +76,8 @@ TEST_F(CostLevels, LevelsPastThePresetsLieBeyondTheReference) {
     for (const auto& [option, level] : accuracy_preset("reference").levels)
       if (option == row.option)
         expected = place(accuracy_option(option), row.level) > place(accuracy_option(option), level);
+    // Of loops the reference has the scene's, which are affine here.
+    if (row.option == "strain") expected = row.level == "relaxed";
     EXPECT_EQ(row.beyond, expected) << row.option << " " << row.level;
     beyond += row.beyond;
   }

@@ -1,0 +1,132 @@
+#include "geom/chart/loops.h"
+
+#include <algorithm>
+
+#include "geom/error.h"
+
+namespace wale {
+namespace {
+
+// Loops held on one needle, the one in front first.
+using Needle = std::vector<int>;
+
+class Knitter {
+ public:
+  explicit Knitter(const StitchChart& chart) : chart_(chart), rows_(int(chart.rows.size())) {
+    // What is there before the first tile is no loop of it: -1.
+    needles_.assign(size_t(chart.wales()), Needle{-1});
+  }
+
+  void row(int number) {
+    std::vector<Needle> after;
+    Course course;
+    size_t next = 0;  // needle of the row below
+    for (const ChartCell& cell : chart_.rows[size_t(number % rows_)]) {
+      const auto first = needles_.begin() + long(next);
+      next += size_t(cell.takes());
+      const int wale = int(after.size());
+      switch (cell.stitch) {
+        case Stitch::knit:
+        case Stitch::purl:
+          after.push_back(pull(*first, number, wale, cell.stitch == Stitch::knit, course));
+          break;
+        case Stitch::k2tog:
+        case Stitch::ssk: {
+          const Needle &front = cell.stitch == Stitch::k2tog ? first[1] : first[0],
+                       &behind = cell.stitch == Stitch::k2tog ? first[0] : first[1];
+          Needle both = front;
+          both.insert(both.end(), behind.begin(), behind.end());
+          after.push_back(pull(both, number, wale, true, course));
+          break;
+        }
+        case Stitch::slip:
+        case Stitch::slip_front:
+          after.push_back(*first);
+          course.places.push_back({-1, cell.stitch == Stitch::slip_front});
+          break;
+        case Stitch::tuck:
+          after.push_back(*first);
+          after.back().push_back(make(Loop::Foot::tuck, number, wale, true, course));
+          break;
+        case Stitch::yarn_over:
+          after.push_back({make(Loop::Foot::yarn_over, number, wale, true, course)});
+          break;
+        case Stitch::cable:
+          // The right ones come first now.
+          for (int k = 0; k < cell.makes(); ++k) {
+            const bool was_right = k < cell.right;
+            const Needle& from = first[was_right ? cell.left + k : k - cell.right];
+            for (const int loop : from)
+              if (loop >= 0) knit_.loops[size_t(loop)].crossing = was_right == cell.left_in_front ? -1 : 1;
+            after.push_back(pull(from, number, wale + k, true, course));
+          }
+          break;
+      }
+    }
+    needles_ = std::move(after);
+    knit_.courses.push_back(std::move(course));
+  }
+
+  Knit knit_;
+
+ private:
+  int make(Loop::Foot foot, int row, int wale, bool front, Course& course) {
+    Loop loop;
+    loop.foot = foot;
+    loop.row = row, loop.wale = wale, loop.knit = front;
+    loop.top_row = -1;
+    knit_.loops.push_back(loop);
+    const int number = int(knit_.loops.size()) - 1;
+    course.places.push_back({number, false});
+    return number;
+  }
+
+  Needle pull(const Needle& through, int row, int wale, bool front, Course& course) {
+    int place = 0;
+    for (const int number : through) {
+      if (number >= 0) {
+        Loop& loop = knit_.loops[size_t(number)];
+        loop.top_row = row, loop.top_wale = wale, loop.top_knit = front;
+        loop.place = place, loop.beside = int(through.size());
+      }
+      ++place;
+    }
+    return {make(Loop::Foot::pulled, row, wale, front, course)};
+  }
+
+  const StitchChart& chart_;
+  int rows_;
+  std::vector<Needle> needles_;
+};
+
+}  // namespace
+
+Knit knit_chart(const StitchChart& chart, const std::filesystem::path& file) {
+  // A tile below settles what is held when the tile begins; tiles above take what it holds when it ends.
+  constexpr int kTiles = 4;
+  const int rows = int(chart.rows.size());
+  Knitter knitter(chart);
+  for (int row = 0; row < kTiles * rows; ++row) knitter.row(row);
+  Knit out;
+  out.wales = chart.wales();
+  out.rows = rows;
+  for (int row = rows; row < 2 * rows; ++row) {
+    Course course = knitter.knit_.courses[size_t(row)];
+    for (size_t wale = 0; wale < course.places.size(); ++wale) {
+      auto& place = course.places[wale];
+      if (place.loop < 0) continue;
+      Loop loop = knitter.knit_.loops[size_t(place.loop)];
+      if (loop.top_row < 0)
+        user_error("{}:{}: the loop of wale {} is held by every row above and never taken", file.string(),
+                   chart.line[size_t(row % rows)], wale + 1);
+      loop.row -= rows;
+      loop.top_row -= rows;
+      place.loop = int(out.loops.size());
+      out.loops.push_back(loop);
+    }
+    out.courses.push_back(std::move(course));
+  }
+  return out;
+}
+
+}  // namespace wale

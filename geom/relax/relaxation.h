@@ -1,0 +1,43 @@
+#pragma once
+#include <functional>
+#include <string>
+
+#include "geom/relax/periodic_yarns.h"
+
+namespace wale {
+
+/// How yarns are relaxed. Lengths are in yarn diameters D, forces in B / D^2 with the yarn's bending stiffness B: an
+/// unstretched, frictionless yarn takes the same shape whatever B is.
+struct RelaxSettings {
+  double stretch_stiffness = 3000;  ///< B / D^2 per unit of strain
+  double closest = 0.95;            ///< least distance of centrelines, D; contact forces reach up to 1 D
+  double contact_stiffness = 100;   ///< B / D^3
+  double neighbours = 2;            ///< D of arc below which points of one yarn do not touch
+  dvec2 tension{0, 0};              ///< force on the tile along x and y per period across, B / D^3
+  bool free_period_x = true, free_period_y = true;
+  double force_tolerance = 2e-3;  ///< largest force on a point and on the period's sides, B / D^2
+  int max_steps = 3000;
+};
+
+/// What was reached.
+struct Relaxed {
+  bool converged = false;
+  int steps = 0;
+  double force = 0;            ///< largest left on a point, B / D^2
+  double period_force = 0;     ///< and on the period
+  double closest = 0;          ///< of centrelines that are no neighbours, D
+  double strain = 0;           ///< largest of a segment
+  double thickness_share = 0;  ///< of the yarn's diameter that the relaxation came to; 1 unless it failed
+};
+
+/// Moves the points and the period to a state of least energy: bending of an inextensible yarn that slides without
+/// friction, and contact. Yarns start thin and swell until they have their diameter. Each step is bounded by the
+/// distances between segments, so that none passes through another (relax.cpp). Deterministic.
+/// `progress` gets the share of the diameter and returns false to stop.
+Relaxed relax(PeriodicYarns& yarns, const RelaxSettings& settings,
+              const std::function<bool(double share, double force)>& progress = {});
+
+/// Least distance between centrelines that are no neighbours, metres; `reach` where all are farther apart than that.
+double closest_distance(const PeriodicYarns& yarns, double neighbours, double reach);
+
+}  // namespace wale
