@@ -1,7 +1,10 @@
 #pragma once
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "geom/vec.h"
@@ -16,6 +19,7 @@ enum class CurveKind { interpolating, bspline };
 struct PatternCurve {
   std::vector<dvec3> points;  ///< metres; x along the course, y along the wale, z through the fabric, 0 = mid-surface
   bool closed = false;
+  int yarn = 0;  ///< of what colour: index into Pattern::palette
 };
 
 /// A tile of relaxed yarn, periodic in x and y (KNIT21 section 3.1).
@@ -26,7 +30,13 @@ struct Pattern {
   ivec2 stitches{0, 0};    ///< wales and courses in one tile; estimated by the reader where the file does not say
   CurveKind kind = CurveKind::interpolating;
   std::vector<PatternCurve> curves;
+  std::vector<std::array<uint8_t, 3>> palette;  ///< sRGB colours of its yarns; empty: that of the material
+  std::vector<std::string> chart;               ///< rows of the chart that it was knitted from (docs/patterns.md) ...
+  std::vector<std::pair<std::string, double>> settings;  ///< ... and the settings, by name
 };
+
+/// Most yarns of different colours in one tile.
+constexpr int kMostYarns = 256;
 
 /// What a file does not say; zero means "take it from the file, or recover it".
 struct PatternHints {
