@@ -10,9 +10,6 @@
 namespace wale {
 namespace {
 
-/// Deviation of a seam from a pure translation that is still a join, relative to the translation. Files with six
-/// decimals reach 2e-6; 1e-5 of a sleeve's girth is a hundredth of a ply radius.
-constexpr double kJoinTolerance = 1e-5;
 /// A translation must hold along this share of the chart's own seams, and reach across this share of its box.
 constexpr double kJoinShare = 0.25, kJoinExtent = 0.5;
 

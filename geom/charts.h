@@ -6,6 +6,10 @@
 
 namespace wale {
 
+/// Deviation of a seam from a pure translation that is still a join, relative to the translation. Files with six
+/// decimals reach 2e-6; 1e-5 of a sleeve's girth is a hundredth of a ply radius.
+constexpr double kJoinTolerance = 1e-5;
+
 /// A connected piece of the UV layout.
 struct Chart {
   std::vector<uint32_t> triangles;

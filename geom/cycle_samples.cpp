@@ -125,6 +125,21 @@ FineCycle trace_within(const YarnSpline& spline, const ArcLength& arc_length, co
   user_error("pattern '{}': a tolerance of {} ply radii cannot be met", name, spec.tolerance);
 }
 
+/// Offsets of a yarn's samples in every shape of the tile's strain table, per link.
+void add_strained(const Pattern& pattern, const YarnChain& yarn, dvec3 scale, const YarnSpline& spline,
+                  const ArcLength& arc_length, TileSamples& tile) {
+  const auto& shapes = pattern.strains.offsets;
+  std::vector<YarnSpline> moves;
+  for (const auto& offsets : shapes) moves.emplace_back(pattern, yarn, scale, offsets, spline);
+  for (const Link& link : yarn.links) {
+    LinkSamples& samples = tile.of_curve[link.curve];
+    for (const double s : samples.arc) {
+      const ArcLength::Place at = arc_length.at(s);
+      for (const YarnSpline& move : moves) samples.strained.push_back(move.position(at.span, at.u));
+    }
+  }
+}
+
 /// Passes of its cycle after which a yarn meets itself; 0 if it never does.
 int passes_to_close(ivec2 shift, ivec2 wrap) {
   int passes = 1;
@@ -188,6 +203,7 @@ TileSamples sample_tile(const Pattern& pattern, const PartnerMap& partners, cons
         samples.arc.push_back(fine.arc[step]);
       }
     }
+    if (spec.strains) add_strained(pattern, yarn, scale, spline, arc_length, tile);
     tile.cycles.push_back(cycle);
   }
   return tile;

@@ -12,6 +12,7 @@ struct LinkSamples {
   std::vector<dvec3> centre;            ///< metres
   std::vector<dvec3> normal, binormal;  ///< frame of the yarn axis in pass 0 of the cycle; binormal = tangent x normal
   std::vector<double> arc;              ///< metres from the start of the cycle
+  std::vector<dvec3> strained;          ///< where YarnSpec::strains: [i * shapes + shape] offset of the centre, metres
 };
 
 /// All that the tile's yarns need once: the same samples are then laid along every full yarn. The least-rotation frame

@@ -97,7 +97,8 @@ Fabric knit_fabric(BaseMesh mesh, const Pattern& pattern, const FabricSpec& spec
     fabric.grids.push_back(grid);
     if (!chart_map.knitted) continue;
     const FlatKnit knit(pattern, partners, map.yarn, chart_map.scale, chart_map.rect);
-    cut_yarns(fabric, {fabric, c, chart_map, spec, bundle.get(), map.flyaway_radius}, knit, threads, uv);
+    cut_yarns(fabric, {fabric, c, chart_map, spec, bundle.get(), map.flyaway_radius,
+                       spec.strain == LoopStrain::relaxed ? &pattern.strains : nullptr}, knit, threads, uv);
   }
   if (fabric.runs.empty()) user_error("fabric '{}': no yarn lies on the cloth; give a finer scale", spec.name);
 

@@ -23,6 +23,9 @@ struct FabricScale {
 /// The first three share one geometry and differ in shading alone.
 enum class Detail { none, paper, maps, fibres };
 
+/// What a yarn does where its cloth is stretched: its tile is scaled, or takes the shape that its strain table gives.
+enum class LoopStrain { affine, relaxed };
+
 /// How the points of a fabric are held: kept, or warped anew from a lattice wherever a ray needs them.
 enum class Storage { automatic, stored, procedural };
 
@@ -41,6 +44,7 @@ struct FabricSpec {
   FlyawaySpec flyaways;
   bool places = false;  ///< fill Fabric::place
   bool cell_lists = true;  ///< fill Fabric::cell_triangles and cell_segments
+  LoopStrain strain = LoopStrain::affine;
   Storage storage = Storage::automatic;
   int lattice = 0;  ///< cells along a tile's side of a lattice that takes the mesh's place in the warp; 0 = none
 };
@@ -106,6 +110,14 @@ struct Csr {
   std::vector<uint32_t> offset, item;
 };
 
+/// The strains that a fabric's loops follow.
+struct StrainReport {
+  size_t samples = 0;  ///< of yarns on the cloth
+  size_t clamped = 0;  ///< of them where the cloth is strained beyond the tile's table, whose border was taken
+  dvec2 least{0, 0}, most{0, 0};  ///< along course and wale
+  void add(const StrainReport& other);
+};
+
 /// A knitted fabric, tied to its base mesh, ready for the device. Numbers of vertices, cells and triangles are local to
 /// the fabric; the host concatenates.
 struct Fabric {
@@ -135,6 +147,7 @@ struct Fabric {
     size_t samples_outside = 0;       ///< yarn samples beyond the half-stitch margin, not traced
     size_t samples_extrapolated = 0;  ///< in the margin
     size_t jumps_cut = 0;             ///< places where a yarn was cut because its chart folds back beside itself in UV
+    StrainReport strain;              ///< LoopStrain::relaxed: otherwise empty
     double worst_partner_distance = 0;   ///< metres in the pattern
     std::vector<ivec2> snapped_repeats;  ///< per joined chart, whole tiles across the join
     dvec2 tile_metres{0, 0};             ///< size of one tile in the cloth

@@ -32,6 +32,10 @@ void check_spec(const Pattern& pattern, const FabricSpec& spec) {
   if (!(spec.patches_per_cell >= 1) || !(spec.patches_per_cell <= 1e6))
     user_error("fabric '{}': {} patches per cell; give 1 to 1000000", spec.name, spec.patches_per_cell);
   if (pattern.curves.empty()) user_error("fabric '{}': pattern '{}' has no curves", spec.name, pattern.name);
+  if (spec.strain == LoopStrain::relaxed && pattern.strains.empty())
+    user_error(
+        "fabric '{}': pattern '{}' has no table of strains to relax by; give a tile with one, or strain \"affine\"",
+        spec.name, pattern.name);
   positive("the pattern's period along x", pattern.period.x);
   positive("the pattern's period along y", pattern.period.y);
   positive("the pattern's yarn radius", pattern.yarn_radius);
@@ -122,6 +126,7 @@ void set_yarn(const Pattern& pattern, const FabricSpec& spec, double z_scale, Fa
   map.yarn.plies = spec.plies;
   map.yarn.tolerance = spec.tolerance;
   map.yarn.places = spec.places;
+  map.yarn.strains = spec.strain == LoopStrain::relaxed;
   map.yarn.twist = spec.twist_pitch == 0 ? 0 : 1 / (spec.twist_pitch * map.yarn_radius);
   fill_yarn(map.yarn, map.yarn_radius);
   if (spec.ply_radius > 0) set_ply_radius(spec, map);

@@ -21,6 +21,7 @@ class FlatKnit::Layer {
   Layer(const Pattern& pattern, const PartnerMap& partners, TileSamples&& tile, const YarnSpec& spec, dvec3 scale)
       : tile_(std::move(tile)), spec_(spec), period_(pattern.period.x * scale.x, pattern.period.y * scale.y, 0) {
     if (spec.places) places_ = stitch_places(pattern, partners, tile_, scale);
+    shapes_ = pattern.strains.offsets.size();
     for (int ply = 0; ply < spec.plies; ++ply) {
       cos_.push_back(std::cos(kTwoPi * ply / spec.plies));
       sin_.push_back(std::sin(kTwoPi * ply / spec.plies));
@@ -34,6 +35,7 @@ class FlatKnit::Layer {
     yarn.centre.resize(count);
     yarn.position.resize(count * spec_.plies);
     yarn.place.resize(spec_.places ? count : 0);
+    yarn.strained.assign(spec_.strains ? count : 0, nullptr);
 
     const LinkSamples& first = tile_.of_curve[chain.links[0].curve];
     const CycleSamples& cycle = tile_.cycles[first.cycle];
@@ -80,6 +82,7 @@ class FlatKnit::Layer {
            const Twist& twist) const {
     const dvec3 centre = samples.centre[i] + dvec3(instance.x, instance.y, 0) * period_;
     yarn.centre[at] = centre;
+    if (spec_.strains) yarn.strained[at] = &samples.strained[i * shapes_];
     const double s = pass * twist.cycle.length + samples.arc[i] - twist.start;
     const double angle = spec_.phase + twist.per_metre * s + pass * twist.cycle.turn;
     const double c = spec_.helix_radius * std::cos(angle), d = spec_.helix_radius * std::sin(angle);
@@ -121,6 +124,7 @@ class FlatKnit::Layer {
   YarnSpec spec_;
   StitchPlaces places_;
   dvec3 period_;
+  size_t shapes_ = 0;  ///< of the pattern's strain table
   std::vector<double> cos_, sin_;
 };
 

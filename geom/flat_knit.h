@@ -17,6 +17,7 @@ struct YarnSpec {
   double tolerance = 0.02;  ///< largest distance of a ply polyline from its curve, in ply radii
   double winding = -1;      ///< 1/m: curvature of explicit fibres about the ply, whose tolerance it then is; < 0: none
   bool places = false;      ///< say of every sample where on its yarn and in which stitch it lies
+  bool strains = false;     ///< say of every sample where the tile's strain table moves it
 };
 
 /// Where a sample lies on its yarn, and in which stitch.
@@ -42,6 +43,9 @@ struct FlatYarn {
   std::vector<dvec3> tangent;    ///< unit: mean of a ply's two edges
   std::vector<double> length;    ///< metres of ply from the start of the full yarn (rest length)
   std::vector<YarnPlace> place;  ///< per sample where YarnSpec::places asks for it; a ghost's `along` goes on
+  /// Per sample where YarnSpec::strains asks for it: offset of the yarn axis, metres, in each shape of the pattern's
+  /// strain table; null for ghosts. Lives as long as the FlatKnit. What the flat yarn says holds at strain 0.
+  std::vector<const dvec3*> strained;
 };
 
 /// The full yarns of a rectangle of tiles. Samples of one tile are the same in every instance: chosen by arc length so

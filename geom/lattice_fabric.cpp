@@ -13,6 +13,7 @@ namespace wale {
 std::string lattice_obstacle(const BaseMesh& mesh, const Pattern& pattern, const FabricSpec& spec) {
   if (spec.detail == Detail::fibres) return "its fibres are explicit";
   if (spec.flyaways.any()) return "it has flyaways";
+  if (spec.strain == LoopStrain::relaxed) return "its strain is \"relaxed\", which gives every tile its own shape";
   if (spec.places) return "its colours vary over the cloth";
   if (std::string why = tile_knit_obstacle(pattern, match_partners(pattern), spec.plies); !why.empty()) return why;
   for (const Chart& chart : find_charts(mesh))

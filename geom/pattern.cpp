@@ -41,7 +41,27 @@ void check_pattern(const std::filesystem::path& file, const Pattern& pattern) {
   if (!(pattern.yarn_radius > 0) || !std::isfinite(pattern.yarn_radius))
     user_error("{}: the yarn radius is {} m; it must be positive", file.string(), pattern.yarn_radius);
   if (pattern.curves.empty()) user_error("{}: the tile has no curves", file.string());
-  for (size_t c = 0; c < pattern.curves.size(); ++c) check_curve(file, pattern.curves[c], c);
+  size_t points = 0;
+  for (size_t c = 0; c < pattern.curves.size(); ++c) {
+    check_curve(file, pattern.curves[c], c);
+    points += pattern.curves[c].points.size();
+  }
+  if (const std::string fault = fault_of(pattern.strains, points); !fault.empty())
+    user_error("{}: strains.{}", file.string(), fault);
+}
+
+/// Some writers end a ring with its first point; the spline closes it by itself.
+void open_rings(Pattern& pattern) {
+  size_t first = 0;  // of a curve among all points of the tile
+  for (PatternCurve& curve : pattern.curves) {
+    auto& points = curve.points;
+    if (curve.closed && points.size() > 1 && points.front() == points.back()) {
+      points.pop_back();
+      for (auto& shape : pattern.strains.offsets)
+        if (first + points.size() < shape.size()) shape.erase(shape.begin() + ptrdiff_t(first + points.size()));
+    }
+    first += points.size();
+  }
 }
 
 /// In lower case, one of those that the readers have.
@@ -75,9 +95,7 @@ Pattern parse_pattern(std::string_view bytes, const std::filesystem::path& file,
   } else {
     pattern = parse_pattern_json(bytes, file, hints);
   }
-  // Some writers end a ring with its first point; the spline closes it by itself.
-  for (PatternCurve& curve : pattern.curves)
-    if (curve.closed && curve.points.size() > 1 && curve.points.front() == curve.points.back()) curve.points.pop_back();
+  open_rings(pattern);
   if (pattern.name.empty()) pattern.name = file.stem().string();
   check_pattern(file, pattern);
   if (hints.stitches.x > 0) pattern.stitches.x = hints.stitches.x;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "geom/strain_table.h"
 #include "geom/vec.h"
 
 namespace wale {
@@ -33,6 +34,7 @@ struct Pattern {
   std::vector<std::array<uint8_t, 3>> palette;  ///< sRGB colours of its yarns; empty: that of the material
   std::vector<std::string> chart;               ///< rows of the chart that it was knitted from (docs/patterns.md) ...
   std::vector<std::pair<std::string, double>> settings;  ///< ... and the settings, by name
+  StrainTable strains;  ///< empty where it is not known how the tile gives way
 };
 
 /// Most yarns of different colours in one tile.

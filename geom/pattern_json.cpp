@@ -1,6 +1,7 @@
 // Wale's own tile: {"wale_tile": 1, "name", "period": [x, y], "yarn_radius", "stitches": [wales, courses],
-// "kind": "interpolating" or "bspline", "curves": [{"points": [[x, y, z], ...], "closed": false, "yarn": 0}]}, in metres;
-// "palette": ["#rrggbb", ...] has the colour of each yarn. "knitted_from": {"chart": [rows], "settings": {name: number}}.
+// "kind": "interpolating" or "bspline", "curves": [{"points": [[x, y, z], ...], "closed": false, "yarn": 0}]}, in
+// metres; "palette": ["#rrggbb", ...] has the colour of each yarn; "knitted_from": {"chart": [rows], "settings": {name:
+// number}}; "strains": {"course": [a, ...], "wale": [b, ...], "offsets": [[[x, y, z], ...], ...]}, as in StrainTable.
 #include "geom/chart/chart_row.h"
 #include "geom/json_value.h"
 #include "geom/pattern_readers.h"
@@ -12,13 +13,29 @@ namespace {
 using Json = nlohmann::json;
 using Value = JsonValue;
 
+std::vector<dvec3> read_points(const Value& value) {
+  std::vector<dvec3> points;
+  for (const Value& row : value.items()) {
+    const std::vector<Value> p = row.items(3);
+    points.emplace_back(p[0].number(), p[1].number(), p[2].number());
+  }
+  return points;
+}
+
+StrainTable read_strains(const Value& value) {
+  value.only({"course", "wale", "offsets"});
+  StrainTable table;
+  for (const Value& strain : value["course"].items()) table.course.push_back(strain.number());
+  for (const Value& strain : value["wale"].items()) table.wale.push_back(strain.number());
+  for (const Value& shape : value["offsets"].items()) table.offsets.push_back(read_points(shape));
+  if (table.empty()) value["course"].complain("no strains; give at least 0, or leave the key \"strains\" out");
+  return table;
+}
+
 PatternCurve read_curve(const Value& value) {
   value.only({"points", "closed", "yarn"});
   PatternCurve curve;
-  for (const Value& row : value["points"].items()) {
-    const std::vector<Value> p = row.items(3);
-    curve.points.emplace_back(p[0].number(), p[1].number(), p[2].number());
-  }
+  curve.points = read_points(value["points"]);
   if (value.has("closed")) curve.closed = value["closed"].truth();
   if (value.has("yarn")) {
     curve.yarn = value["yarn"].whole();
@@ -51,11 +68,20 @@ void read_origin(const Value& root, Pattern& pattern) {
     pattern.settings.emplace_back(key, from["settings"][key.c_str()].number());
 }
 
+// Names may be any bytes, what is written is UTF-8.
+std::string safe_text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 // As json.dump, but a point is one line.
 std::string numbers(std::initializer_list<double> values) {
   std::string out = "[";
   for (const double v : values) out += (out.size() > 1 ? ", " : "") + Json(v).dump();
   return out + "]";
+}
+
+std::string points_text(const std::vector<dvec3>& points) {
+  std::string out;
+  for (const dvec3& p : points) out += (out.empty() ? "\n   " : ",\n   ") + numbers({p.x, p.y, p.z});
+  return "[" + out + "]";
 }
 
 }  // namespace
@@ -64,7 +90,8 @@ Pattern parse_pattern_json(std::string_view text, const std::filesystem::path& p
   const std::string file = path.string();
   const Json json = parse_json(text, file);
   const Value root(file, "", json);
-  root.only({"wale_tile", "name", "period", "yarn_radius", "stitches", "kind", "curves", "palette", "knitted_from"});
+  root.only({"wale_tile", "name", "period", "yarn_radius", "stitches", "kind", "curves", "palette", "knitted_from",
+             "strains"});
   if (root["wale_tile"].whole() != 1) root["wale_tile"].complain("only version 1 is known");
   Pattern pattern;
   if (root.has("name")) pattern.name = root["name"].text();
@@ -89,11 +116,12 @@ Pattern parse_pattern_json(std::string_view text, const std::filesystem::path& p
   for (const Value& curve : root["curves"].items()) pattern.curves.push_back(read_curve(curve));
   read_palette(root, pattern);
   read_origin(root, pattern);
+  if (root.has("strains")) pattern.strains = read_strains(root["strains"]);
   return pattern;
 }
 
 void write_pattern_json(const Pattern& pattern, const std::filesystem::path& file) {
-  std::string out = "{\n \"wale_tile\": 1,\n \"name\": " + Json(pattern.name).dump();
+  std::string out = "{\n \"wale_tile\": 1,\n \"name\": " + safe_text(pattern.name);
   const auto key = [&](const char* name, const std::string& value) { out += fmt::format(",\n \"{}\": {}", name, value); };
   key("period", numbers({pattern.period.x, pattern.period.y}));
   key("yarn_radius", Json(pattern.yarn_radius).dump());
@@ -109,16 +137,19 @@ void write_pattern_json(const Pattern& pattern, const std::filesystem::path& fil
   if (!pattern.chart.empty()) {
     nlohmann::ordered_json settings = nlohmann::ordered_json::object();
     for (const auto& [name, value] : pattern.settings) settings[name] = value;
-    key("knitted_from", "{\n  \"chart\": " + Json(pattern.chart).dump() + ",\n  \"settings\": " + settings.dump() + "}");
+    key("knitted_from", "{\n  \"chart\": " + safe_text(pattern.chart) + ",\n  \"settings\": " + settings.dump() + "}");
   }
   std::string curves;
-  for (const PatternCurve& curve : pattern.curves) {
-    std::string points;
-    for (const dvec3& p : curve.points) points += (points.empty() ? "\n   " : ",\n   ") + numbers({p.x, p.y, p.z});
-    curves += fmt::format("{}\n  {{\"yarn\": {}, \"closed\": {}, \"points\": [{}]}}", curves.empty() ? "" : ",", curve.yarn,
-                          curve.closed, points);
-  }
+  for (const PatternCurve& curve : pattern.curves)
+    curves += fmt::format("{}\n  {{\"yarn\": {}, \"closed\": {}, \"points\": {}}}", curves.empty() ? "" : ",",
+                          curve.yarn, curve.closed, points_text(curve.points));
   key("curves", "[" + curves + "]");
+  if (const StrainTable& strains = pattern.strains; !strains.empty()) {
+    std::string offsets;
+    for (const auto& shape : strains.offsets) offsets += (offsets.empty() ? "\n   " : ",\n   ") + points_text(shape);
+    key("strains", fmt::format("{{\n  \"course\": {},\n  \"wale\": {},\n  \"offsets\": [{}]}}",
+                               Json(strains.course).dump(), Json(strains.wale).dump(), offsets));
+  }
   write_whole_file(file, out + "\n}\n");
 }
 

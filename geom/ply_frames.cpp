@@ -12,18 +12,6 @@ dvec3 unit_or(const dvec3& v, const dvec3& otherwise) {
   return length > 0 ? v / length : otherwise;
 }
 
-/// Mean of the two unit edges at every vertex of one polyline; the edge itself at its two ends.
-void mean_tangents(const dvec3* p, size_t count, dvec3* tangent) {
-  dvec3 before = unit_or(p[1] - p[0], dvec3(1, 0, 0));
-  tangent[0] = before;
-  for (size_t k = 1; k + 1 < count; ++k) {
-    const dvec3 after = unit_or(p[k + 1] - p[k], before);
-    tangent[k] = unit_or(before + after, after);  // a fold by 180 degrees has no mean
-    before = after;
-  }
-  tangent[count - 1] = before;
-}
-
 dvec3 turned(const dvec3& n, const dvec3& axis, double angle) {
   return std::cos(angle) * n + std::sin(angle) * glm::cross(axis, n);
 }
@@ -35,6 +23,17 @@ void measure(const dvec3* p, size_t first, size_t count, double* length) {
 }
 
 }  // namespace
+
+void mean_tangents(const dvec3* p, size_t count, dvec3* tangent) {
+  dvec3 before = unit_or(p[1] - p[0], dvec3(1, 0, 0));
+  tangent[0] = before;
+  for (size_t k = 1; k + 1 < count; ++k) {
+    const dvec3 after = unit_or(p[k + 1] - p[k], before);
+    tangent[k] = unit_or(before + after, after);  // a fold by 180 degrees has no mean
+    before = after;
+  }
+  tangent[count - 1] = before;
+}
 
 void frame_plies(FlatYarn& yarn, int plies) {
   const size_t count = yarn.centre.size(), all = count * plies;

@@ -9,6 +9,9 @@ namespace wale {
 /// samples agree with the samples that they repeat.
 void frame_plies(FlatYarn& yarn, int plies);
 
+/// Mean of the two unit edges at every vertex of a polyline of `count` points; the edge itself at its two ends.
+void mean_tangents(const dvec3* points, size_t count, dvec3* tangent);
+
 /// Mean of the two unit edges at sample k of a ply, to which its frame normal is perpendicular; the edge at an open
 /// end.
 dvec3 ply_tangent(const FlatYarn& yarn, size_t ply, size_t k);

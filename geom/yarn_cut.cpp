@@ -16,7 +16,8 @@ constexpr double kJump = 3;
 
 }  // namespace
 
-YarnCutter::YarnCutter(const YarnCutting& cutting, const ChartLocator& locator, size_t first_yarn)
+YarnCutter::YarnCutter(const YarnCutting& cutting, const ChartLocator& locator, const StrainField* field,
+                       size_t first_yarn)
     : fabric_(cutting.fabric),
       chart_(cutting.chart),
       map_(cutting.map),
@@ -24,6 +25,8 @@ YarnCutter::YarnCutter(const YarnCutting& cutting, const ChartLocator& locator, 
       bundle_(cutting.bundle),
       flyaway_radius_(cutting.flyaway_radius),
       locator_(locator),
+      strains_(cutting.strains),
+      field_(field),
       first_yarn_(first_yarn) {
   if (bundle_) bundle_->groups(kFibreGroup, fibre_order_, fibre_groups_);
 }
@@ -54,7 +57,7 @@ bool YarnCutter::jumps(const Sample& a, const Sample& b) const {
   return glm::length(b.point - a.point) > kJump * std::max({forth, back, flat});
 }
 
-void YarnCutter::add(const FlatYarn& yarn) {
+void YarnCutter::add(FlatYarn& yarn) {
   const size_t total = yarn.centre.size();
   // A closed yarn's own samples are 1 .. K-3; 0, K-2 and K-1 repeat them.
   const size_t first = yarn.closed ? 1 : 0, count = yarn.closed ? total - 3 : total;
@@ -81,6 +84,8 @@ void YarnCutter::add(const FlatYarn& yarn) {
     out_.samples_outside += !here.kept;
     out_.samples_extrapolated += here.kept && here.at.outside > 0;
   }
+  // Where the cloth ends is decided on the unstrained yarn: which samples stay does not change while a cloth moves.
+  if (field_) follow_strain(yarn);
   if (whole) {
     add_runs(yarn, {0, total, true});
     ++out_.yarns;

@@ -2,6 +2,7 @@
 #include "geom/fabric.h"
 #include "geom/fabric_map.h"
 #include "geom/fibre_bundle.h"
+#include "geom/strain_field.h"
 
 namespace wale {
 
@@ -13,6 +14,7 @@ struct CutYarns {
   std::vector<StrandPlace> place;
   std::vector<dvec2> uv;  ///< per vertex, in the flat knit
   size_t yarns = 0, flyaways = 0, samples_outside = 0, samples_extrapolated = 0, jumps_cut = 0;
+  StrainReport strain;
 };
 
 /// Where yarns are cut: one chart of a fabric whose mesh, charts, scales and radii are known.
@@ -21,8 +23,9 @@ struct YarnCutting {
   uint32_t chart;
   const ChartMap& map;
   const FabricSpec& spec;
-  const FibreBundle* bundle;  ///< the fibres of its plies, where they are explicit
-  double flyaway_radius;      ///< metres, 0 where there are none
+  const FibreBundle* bundle;   ///< the fibres of its plies, where they are explicit
+  double flyaway_radius;       ///< metres, 0 where there are none
+  const StrainTable* strains;  ///< of the tile, where its loops follow the strain of the cloth; else null
 };
 
 /// Cuts all yarns of a chart and appends them to its fabric, in their order, and to `uv` per vertex; on `threads`
@@ -34,9 +37,10 @@ void cut_yarns(Fabric& fabric, const YarnCutting& cutting, const FlatKnit& knit,
 /// stitch of its border stays.
 class YarnCutter {
  public:
-  /// `first_yarn`: number of the first yarn of all that is added.
-  YarnCutter(const YarnCutting& cutting, const ChartLocator& locator, size_t first_yarn);
-  void add(const FlatYarn& yarn);
+  /// `first_yarn`: number of the first yarn of all that is added. `field`: where yarns follow it, else null.
+  YarnCutter(const YarnCutting& cutting, const ChartLocator& locator, const StrainField* field, size_t first_yarn);
+  /// Moves the yarn where it follows the strain of the cloth.
+  void add(FlatYarn& yarn);
   /// All that has been added.
   CutYarns take() { return std::move(out_); }
 
@@ -64,6 +68,8 @@ class YarnCutter {
   };
   static Place place_in(const FlatYarn& yarn, size_t sample);
   StoredLength length_of(const FlatYarn& yarn, size_t ply, double& lap) const;
+  void find_shifts(const FlatYarn& yarn);
+  void follow_strain(FlatYarn& yarn);
   void add_places(const FlatYarn& yarn, const Stretch& stretch);
   void add_runs(const FlatYarn& yarn, const Stretch& stretch);
   void add_ply_run(const FlatYarn& yarn, const Stretch& stretch);
@@ -82,13 +88,16 @@ class YarnCutter {
   const FibreBundle* bundle_;
   const double flyaway_radius_;
   const ChartLocator& locator_;
+  const StrainTable* strains_;
+  const StrainField* field_;
   const size_t first_yarn_;
   CutYarns out_;
   std::vector<Sample> samples_;
   dvec2 lap_{0, 0};  ///< UV of one lap of a closed yarn
   std::vector<uint32_t> fibre_order_, fibre_groups_;
-  double strand_ = 0;         ///< metres of yarn laid so far
-  uint32_t first_place_ = 0;  ///< of the stretch that is being added
+  std::vector<dvec3> shift_, unstrained_, tangent_, strained_tangent_;  ///< of follow_strain
+  double strand_ = 0;                                                   ///< metres of yarn laid so far
+  uint32_t first_place_ = 0;                                            ///< of the stretch that is being added
 };
 
 }  // namespace wale

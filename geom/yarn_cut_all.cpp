@@ -3,6 +3,7 @@
 #include <map>
 #include <mutex>
 #include <numeric>
+#include <optional>
 
 #include "geom/run_tasks.h"
 #include "geom/yarn_cut.h"
@@ -34,6 +35,7 @@ void append(Fabric& fabric, std::vector<dvec2>& uv, CutYarns&& cut) {
   fabric.report.samples_outside += cut.samples_outside;
   fabric.report.samples_extrapolated += cut.samples_extrapolated;
   fabric.report.jumps_cut += cut.jumps_cut;
+  fabric.report.strain.add(cut.strain);
 }
 
 }  // namespace
@@ -41,6 +43,11 @@ void append(Fabric& fabric, std::vector<dvec2>& uv, CutYarns&& cut) {
 void cut_yarns(Fabric& fabric, const YarnCutting& cutting, const FlatKnit& knit, unsigned threads,
                std::vector<dvec2>& uv) {
   const ChartLocator locator(fabric.mesh, fabric.charts[cutting.chart]);
+  std::optional<StrainField> field;
+  if (cutting.strains) {
+    const ChartMap& map = cutting.map;
+    field.emplace(fabric.mesh, fabric.charts[cutting.chart], map.metric * map.scale.z / dvec2(map.scale));
+  }
   const size_t yarns = knit.yarns(), first_yarn = fabric.report.full_yarns;
   // A strand goes on from yarn to yarn: where places on it are asked for, they are laid one after the other.
   const size_t batches = cutting.spec.places ? 1 : std::max<size_t>(1, std::min(yarns, kBatches * threads));
@@ -51,7 +58,7 @@ void cut_yarns(Fabric& fabric, const YarnCutting& cutting, const FlatKnit& knit,
   std::iota(tasks.rbegin(), tasks.rend(), size_t(0));
   run_tasks(threads, std::move(tasks), [&](size_t batch, const auto&) {
     const size_t begin = yarns * batch / batches, end = yarns * (batch + 1) / batches;
-    YarnCutter cutter(cutting, locator, first_yarn + begin);
+    YarnCutter cutter(cutting, locator, field ? &*field : nullptr, first_yarn + begin);
     FlatYarn yarn;
     for (size_t i = begin; i < end; ++i) {
       knit.lay(i, yarn);

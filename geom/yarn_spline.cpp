@@ -42,7 +42,27 @@ std::vector<dvec3> solve_cyclic(const std::vector<double>& low, std::vector<doub
 
 YarnSpline::YarnSpline(const Pattern& pattern, const YarnChain& cycle, dvec3 scale) {
   join(pattern, cycle);
-  if (pattern.kind == CurveKind::bspline) {
+  if (pattern.kind == CurveKind::interpolating) set_knots();
+  fit(pattern.kind, scale);
+}
+
+// Splines are linear in their control points where knots are given. Offsets do not advance: as if the period were 0.
+YarnSpline::YarnSpline(const Pattern& pattern, const YarnChain& cycle, dvec3 scale, const std::vector<dvec3>& offsets,
+                       const YarnSpline& curve)
+    : knots_(curve.knots_) {
+  Pattern moves;
+  auto from = offsets.begin();
+  for (const PatternCurve& one : pattern.curves) {
+    const auto to = from + ptrdiff_t(one.points.size());
+    moves.curves.push_back({{from, to}, one.closed});
+    from = to;
+  }
+  join(moves, cycle);
+  fit(pattern.kind, scale);
+}
+
+void YarnSpline::fit(CurveKind kind, dvec3 scale) {
+  if (kind == CurveKind::bspline) {
     fit_bspline();
   } else {
     fit_interpolating();
@@ -90,23 +110,26 @@ void YarnSpline::fit_bspline() {
   }
 }
 
-/// C2 cubic through the control points with chord-length knots (which keep fourth order on uneven points, Floater
-/// 2006). With h the chords and M the second derivatives:
-///   h[i-1] M[i-1] + 2 (h[i-1] + h[i]) M[i] + h[i] M[i+1] = 6 (d[i] - d[i-1]),   d[i] = (P[i+1] - P[i]) / h[i].
-void YarnSpline::fit_interpolating() {
+/// Chord-length knots, which keep fourth order on uneven points (Floater 2006).
+void YarnSpline::set_knots() {
   const int points = static_cast<int>(chain_.size());
   // Fewer than three unknowns would make the cyclic system's corners fall onto its diagonals: take several cycles.
   const int count = points < 3 ? 3 * points : points;
-  std::vector<double> h(count), low(count), diagonal(count), high(count);
-  std::vector<dvec3> slope(count), right(count);
   double mean = 0;
   for (int i = 0; i < points; ++i) mean += glm::distance(control(i), control(i + 1)) / points;
   if (!(mean > 0)) user_error("a yarn of the tile has no length");
-  for (int i = 0; i < count; ++i) {
-    // Points listed twice get a short knot interval, so that the curve only slows down there.
-    h[i] = std::max(glm::distance(control(i), control(i + 1)), 1e-3 * mean);
-    slope[i] = (control(i + 1) - control(i)) / h[i];
-  }
+  // Points listed twice get a short knot interval, so that the curve only slows down there.
+  for (int i = 0; i < count; ++i) knots_.push_back(std::max(glm::distance(control(i), control(i + 1)), 1e-3 * mean));
+}
+
+/// C2 cubic through the control points. With h the knot intervals and M the second derivatives:
+///   h[i-1] M[i-1] + 2 (h[i-1] + h[i]) M[i] + h[i] M[i+1] = 6 (d[i] - d[i-1]),   d[i] = (P[i+1] - P[i]) / h[i].
+void YarnSpline::fit_interpolating() {
+  const std::vector<double>& h = knots_;
+  const int points = static_cast<int>(chain_.size()), count = static_cast<int>(h.size());
+  std::vector<double> low(count), diagonal(count), high(count);
+  std::vector<dvec3> slope(count), right(count);
+  for (int i = 0; i < count; ++i) slope[i] = (control(i + 1) - control(i)) / h[i];
   for (int i = 0; i < count; ++i) {
     const int before = (i + count - 1) % count;
     low[i] = h[before];

@@ -11,6 +11,10 @@ class YarnSpline {
  public:
   /// `scale` is applied to the curve (splines are affine invariant, so it does not change its shape parameter).
   YarnSpline(const Pattern& pattern, const YarnChain& cycle, dvec3 scale);
+  /// What a tile's offsets (geom/strain_table.h: one shape of the table) add to `curve`, its yarn of the same cycle and
+  /// scale, at the same parameters: curve + offsets is the spline through the points moved, with the knots of `curve`.
+  YarnSpline(const Pattern& pattern, const YarnChain& cycle, dvec3 scale, const std::vector<dvec3>& offsets,
+             const YarnSpline& curve);
 
   int spans() const { return static_cast<int>(spans_.size()); }
   /// Position (metres, in the instance of the cycle's first link) at parameter u in [0,1] of a span.
@@ -27,10 +31,13 @@ class YarnSpline {
   };
   void join(const Pattern& pattern, const YarnChain& cycle);
   dvec3 control(int i) const;
+  void set_knots();
+  void fit(CurveKind kind, dvec3 scale);
   void fit_bspline();
   void fit_interpolating();
 
   std::vector<dvec3> chain_;
+  std::vector<double> knots_;  ///< of an interpolating spline: parameter from each point to the next, pattern metres
   std::vector<int> link_start_;
   std::vector<Span> spans_;
   dvec3 advance_{0, 0, 0};

@@ -58,6 +58,12 @@ const std::vector<AccuracyOption>& table() {
            return f.lattice ? std::to_string(f.lattice) : f.storage == Storage::procedural ? "1" : "mesh";
          });
        }},
+      {"strain", "loops where the cloth is stretched: scaled with it, or as the tile's table of strains says",
+       words("fabrics.*.strain", {"affine", "relaxed"}),
+       [](const Scene& s) {
+         return of_fabrics(
+             s, [](const FabricSpec& f) { return f.strain == LoopStrain::relaxed ? "relaxed" : "affine"; });
+       }},
       {"normals", "frames that plies are shaded with: of each segment, or interpolated between joints",
        words("integrator.normals", {"flat", "linear", "rotation-minimising"}),
        [](const Scene& s) { return s.integrator.normals; }},
@@ -127,6 +133,7 @@ std::span<const AccuracyPreset> accuracy_presets() {
                         {"curves", "0.05"},
                         {"joints", "mitre"},
                         {"warp", "mesh"},
+                        {"strain", "affine"},
                         {"normals", "rotation-minimising"},
                         {"detail", "maps"},
                         {"ply_lobes", "full"},

@@ -55,6 +55,13 @@ Json fabric_json(const Fabric& f, const MeshReport& mesh) {
   };
 }
 
+Json strain_json(const StrainReport& strain) {
+  return {{"samples", strain.samples},
+          {"clamped", strain.clamped},
+          {"course", {strain.least.x, strain.most.x}},
+          {"wale", {strain.least.y, strain.most.y}}};
+}
+
 Json textile_json(const TextileMeasures& m) {
   return {{"area_mass_kg_m2", m.area_mass},
           {"loop_length_m", m.yarn_per_stitch},
@@ -75,6 +82,8 @@ std::string build_report_json(const World& world, const std::vector<TextileMeasu
             {"seconds", world.seconds}};
   for (size_t i = 0; i < world.fabrics.size(); ++i) {
     json["fabrics"].push_back(fabric_json(world.fabrics[i], world.fabric_mesh_reports[i]));
+    if (const StrainReport& strain = world.fabrics[i].report.strain; strain.samples > 0)
+      json["fabrics"].back()["strain"] = strain_json(strain);
     if (i < textile.size()) json["fabrics"].back()["textile"] = textile_json(textile[i]);
   }
   return json.dump(2) + "\n";
@@ -120,6 +129,13 @@ std::string build_report_text(const World& world, const std::vector<TextileMeasu
       out += fmt::format("  flyaways   {} curves of radius {:.4f} mm\n", r.flyaways, 1e3 * f.flyaway_radius);
     out += fmt::format("  cut        {} samples outside the cloth, {} in the half stitch past its borders\n",
                        r.samples_outside, r.samples_extrapolated);
+    if (r.strain.samples > 0) {
+      out += fmt::format("  strain     {:.3g} to {:.3g} along courses, {:.3g} to {:.3g} along wales\n", r.strain.least.x,
+                         r.strain.most.x, r.strain.least.y, r.strain.most.y);
+      if (r.strain.clamped > 0)
+        out += fmt::format("  warning    {} of {} samples strained beyond the tile's table, held at its border\n",
+                           r.strain.clamped, r.strain.samples);
+    }
     for (const auto& s : r.snapped_repeats)
       out += fmt::format("  joined     repeats snapped to {} x {} tiles\n", s.x, s.y);
     out += fmt::format("  partners   worst distance {:.3g} mm\n", 1e3 * r.worst_partner_distance);

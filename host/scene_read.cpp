@@ -192,6 +192,7 @@ FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index) {
   fabric.spec.tolerance = number_of(node, "tolerance");
   fabric.spec.flyaways = flyaways_of(node["flyaways"], path);
   fabric.spec.detail = detail_of(node["detail"].text);
+  fabric.spec.strain = node["strain"].text == "relaxed" ? LoopStrain::relaxed : LoopStrain::affine;
   fabric.spec.storage = storage_of(node["storage"].text);
   fabric.spec.lattice = integer_of(node, "lattice");
   fabric.mesh = mesh_of(node["mesh"]);

@@ -142,6 +142,8 @@ Type fabric() {
           {"flyaways", flyaways, "fibres that stand off the plies", "{}"},
           {"detail", word({"none", "paper", "maps", "fibres"}),
            "of plies: the tube, maps as KNIT21, maps, or explicit fibres", "maps"},
+          {"strain", word({"affine", "relaxed"}),
+           "of loops where the cloth is stretched: scaled with it, or as the tile's own table of strains says", "affine"},
           {"storage", word({"auto", "stored", "procedural"}),
            "points of plies kept, or warped from a lattice where a ray needs them; auto = by size", "auto"},
           {"lattice", count(0, 64),
