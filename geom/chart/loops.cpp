@@ -72,6 +72,8 @@ class Knitter {
     courses(number, row, used);
   }
 
+  const std::vector<Needle>& needles() const { return needles_; }
+
   Knit knit_;
 
  private:
@@ -126,6 +128,9 @@ Knit knit_chart(const StitchChart& chart) {
   const int rows = int(chart.rows.size());
   Knitter knitter(chart);
   for (int row = 0; row < kTiles * rows; ++row) knitter.row(row);
+  for (size_t wale = 0; wale < knitter.needles().size(); ++wale)
+    if (knitter.needles()[wale] == Needle{-1})
+      user_error("{}:1: wale {} is slipped in every row: there is no loop in it", chart.rows.front().where, wale + 1);
   Knit out;
   out.wales = chart.wales();
   out.rows = rows;
