@@ -7,8 +7,8 @@
 namespace wale {
 namespace {
 
-// Calls visit(s, t, way) for all pairs of samples, way from the second to the first. A segment's last point is the first
-// sample of the next one.
+// Calls visit(s, t, way) for all pairs of samples, way from the second to the first. A segment's last point is the
+// first sample of the next one.
 template <typename Visit>
 void for_samples(const PeriodicYarns& yarns, const YarnSegment& first, const YarnSegment& second, ivec2 image,
                  int samples, const Visit& visit) {
@@ -24,7 +24,7 @@ void for_samples(const PeriodicYarns& yarns, const YarnSegment& first, const Yar
 }  // namespace
 
 LocalTerm contact_term(const PeriodicYarns& yarns, const YarnSegment& first, const YarnSegment& second, ivec2 image,
-                       const ContactBarrier& barrier, Order order, double exactness) {
+                       const ContactBarrier& barrier, Order order) {
   LocalTerm out;
   out.count = 4;
   out.point[0] = first.a, out.point[1] = first.b, out.point[2] = second.a, out.point[3] = second.b;
@@ -46,7 +46,7 @@ LocalTerm contact_term(const PeriodicYarns& yarns, const YarnSegment& first, con
     const dvec3 n = way / d;
     const dmat3 along = glm::outerProduct(n, n);
     const double weight[] = {1 - s, s, t - 1, -t};
-    out.add(weight, way, slope * n, curvature * along + exactness * slope / d * (dmat3(1.0) - along));
+    out.add(weight, way, slope * n, curvature * along + slope / d * (dmat3(1.0) - along));
     return true;
   });
   return out;

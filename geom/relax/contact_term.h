@@ -18,9 +18,9 @@ struct ContactBarrier {
   int samples = 4;  ///< of a segment, evenly along the closed curve, its corners among them
 };
 
-/// Infinite energy where samples are at c or nearer. Derivatives are exact, with `exactness` as in yarn_terms.h.
+/// Infinite energy where samples are at c or nearer.
 LocalTerm contact_term(const PeriodicYarns& yarns, const YarnSegment& first, const YarnSegment& second, ivec2 image,
-                       const ContactBarrier& barrier, Order order, double exactness);
+                       const ContactBarrier& barrier, Order order);
 
 /// Least distance between the samples of two segments.
 double sample_distance(const PeriodicYarns& yarns, const YarnSegment& first, const YarnSegment& second, ivec2 image,

@@ -9,8 +9,9 @@
 namespace wale {
 namespace {
 
-constexpr double kReach = 1.8;   // D: pairs within it are looked at on every step
-constexpr double kSpare = 0.25;  // D beyond contact that pairs have a place in the matrix
+constexpr double kReach = 1.8;                              // D: pairs within it are looked at on every step
+constexpr double kSpare = 0.05;                             // D beyond contact that pairs have a place in the matrix
+constexpr double kLeastDamping = 1e-7, kLeastShift = 1e-4;  // B / D^3
 
 }  // namespace
 
@@ -31,17 +32,16 @@ void Descent::barrier(double from, double closest) {
   barrier_.samples = settings_.contact_samples;
 }
 
-std::vector<LocalTerm> Descent::terms(const PeriodicYarns& yarns, Order order, double exactness) const {
+std::vector<LocalTerm> Descent::terms(const PeriodicYarns& yarns, Order order) const {
   std::vector<LocalTerm> out;
-  for (const YarnSegment& s : segments_)
-    out.push_back(stretch_term(yarns, s, settings_.stretch_stiffness, order, exactness));
+  for (const YarnSegment& s : segments_) out.push_back(stretch_term(yarns, s, settings_.stretch_stiffness, order));
   for (size_t i = 0; i < segments_.size(); ++i)
-    out.push_back(bending_term(yarns, segments_[i], segments_[next_[i]], order, exactness));
+    out.push_back(bending_term(yarns, segments_[i], segments_[next_[i]], order));
   for (size_t k = 0; k < near_.size(); ++k) {
     if (order == Order::derivatives && distance_[k] >= barrier_.from) continue;
     const SegmentPair& pair = near_[k];
-    const LocalTerm term = contact_term(yarns, segments_[pair.first], segments_[pair.second], pair.image, barrier_,
-                                        order, exactness);
+    const LocalTerm term =
+        contact_term(yarns, segments_[pair.first], segments_[pair.second], pair.image, barrier_, order);
     if (term.energy != 0) out.push_back(term);
   }
   return out;
@@ -49,12 +49,12 @@ std::vector<LocalTerm> Descent::terms(const PeriodicYarns& yarns, Order order, d
 
 double Descent::energy_of(const PeriodicYarns& yarns) const {
   double sum = 0;
-  for (const LocalTerm& term : terms(yarns, Order::energy, 0)) sum += term.energy;
+  for (const LocalTerm& term : terms(yarns, Order::energy)) sum += term.energy;
   return sum - settings_.tension.x * yarns.period.x - settings_.tension.y * yarns.period.y;
 }
 
-void Descent::sum(double exactness) {
-  const std::vector<LocalTerm> all = terms(yarns_, Order::derivatives, exactness);
+void Descent::sum() {
+  const std::vector<LocalTerm> all = terms(yarns_, Order::derivatives);
   std::vector<std::array<uint32_t, 4>> spare;
   for (size_t k = 0; k < near_.size(); ++k) {
     if (distance_[k] >= barrier_.from + kSpare) continue;
@@ -68,15 +68,13 @@ void Descent::sum(double exactness) {
     energy_ += term.energy;
   }
   system_.add_strain(-settings_.tension * yarns_.period);
-  exactness_ = exactness;
 }
 
 void Descent::look() {
   near_ = near_pairs(yarns_, segments_, kReach, settings_.neighbours);
   distance_.resize(near_.size());
   for (size_t k = 0; k < near_.size(); ++k) distance_[k] = glm::length(closest_of(yarns_, segments_, near_[k]).way);
-  sum(cautious_ > 0 ? 0 : 1);
-  if (cautious_ > 0) --cautious_;
+  sum();
 }
 
 double Descent::force() const {
@@ -106,35 +104,29 @@ double Descent::strain() const {
   return most;
 }
 
+// H + damping is made positive by the damping alone: where H has negative directions, as it does on the way to a
+// buckled state, a small one gives long steps just along these.
 bool Descent::step() {
-  for (int attempt = 0; attempt < 16; ++attempt) {
+  for (int attempt = 0; attempt < 24; ++attempt) {
     const auto found = system_.solve(damping_, free_ && settings_.free_period_x, free_ && settings_.free_period_y);
     if (!found) {
-      if (exactness_ > 0) {
-        sum(0);
-        cautious_ = caution_;
-        caution_ = std::min(2 * caution_, 8);
-      } else {
-        damping_ *= 8;
-      }
+      damping_ = std::max(4 * damping_, kLeastShift);
       continue;
     }
     double slope = glm::dot(system_.strain_gradient(), found->strain);
     for (size_t i = 0; i < found->points.size(); ++i) slope += glm::dot(system_.gradient()[i], found->points[i]);
-    const double safe = safe_share(yarns_, segments_, near_, kReach, barrier_.from, *found);
-    double share = safe;
+    double share = safe_share(yarns_, segments_, near_, kReach, barrier_.from, *found);
     for (int halving = 0; halving < 4; ++halving, share *= 0.5) {
       PeriodicYarns next = moved(yarns_, *found, share);
       const double after = energy_of(next);
       if (!(after <= energy_ + 1e-4 * share * slope)) continue;
-      if (exactness_ > 0) caution_ = 1;
       if (halving > 1) damping_ *= 4;
-      if (halving == 0) damping_ = std::max(1e-7, damping_ * (share == 1 ? 0.2 : 0.5));
+      if (halving == 0) damping_ = std::max(0.2 * damping_, kLeastDamping);
       yarns_.points = std::move(next.points);
       yarns_.period = next.period;
       return true;
     }
-    damping_ = std::max(damping_ * 8, 1e-4);
+    damping_ = std::max(8 * damping_, kLeastShift);
   }
   return false;
 }

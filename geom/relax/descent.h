@@ -9,8 +9,8 @@
 
 namespace wale {
 
-/// Newton's method with a bounded, damped step on the energy of a tile (stretch + bending + contact - tension), in units
-/// of the yarn's diameter and bending stiffness.
+/// Newton's method with a bounded, damped step on the energy of a tile (stretch + bending + contact - tension), in
+/// units of the yarn's diameter and bending stiffness.
 class Descent {
  public:
   Descent(PeriodicYarns& yarns, const RelaxSettings& settings);
@@ -29,23 +29,21 @@ class Descent {
   bool step();
 
  private:
-  void sum(double exactness);
+  void sum();
   double energy_of(const PeriodicYarns& yarns) const;
-  std::vector<LocalTerm> terms(const PeriodicYarns& yarns, Order order, double exactness) const;
+  std::vector<LocalTerm> terms(const PeriodicYarns& yarns, Order order) const;
 
   PeriodicYarns& yarns_;
   RelaxSettings settings_;
   std::vector<YarnSegment> segments_;
-  std::vector<uint32_t> next_;       // segment after this one along its yarn
-  std::vector<SegmentPair> near_;    // all within reach
-  std::vector<double> distance_;     // of each
+  std::vector<uint32_t> next_;     // segment after this one along its yarn
+  std::vector<SegmentPair> near_;  // all within reach
+  std::vector<double> distance_;   // of each
   ContactBarrier barrier_;
   NewtonSystem system_;
   bool free_ = true;
   double energy_ = 0;
   double damping_ = 1e-2;
-  double exactness_ = 0;             // of the Hessian that is summed
-  int cautious_ = 0, caution_ = 1;   // steps to come with the positive Hessian, after the next failure
 };
 
 }  // namespace wale

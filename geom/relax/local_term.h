@@ -37,8 +37,7 @@ struct LocalTerm {
     for (int p = 0; p < count; ++p) {
       for (int q = 0; q <= p; ++q)
         hessian[p][q] += weight_v[p] * weight_w[q] * mixed + weight_w[p] * weight_v[q] * turned;
-      for (int k = 0; k < 2; ++k)
-        border[p][k] += weight_v[p] * w[k] * mixed[k] + weight_w[p] * v[k] * turned[k];
+      for (int k = 0; k < 2; ++k) border[p][k] += weight_v[p] * w[k] * mixed[k] + weight_w[p] * v[k] * turned[k];
     }
     strain_hessian[0] += 2 * v.x * w.x * mixed[0][0];
     strain_hessian[1] += v.x * w.y * mixed[1][0] + v.y * w.x * mixed[0][1];

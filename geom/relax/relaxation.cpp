@@ -32,13 +32,11 @@ Relaxed relax(PeriodicYarns& yarns, const RelaxSettings& settings,
     out.closest = closest_distance(yarns, settings.neighbours * diameter, 1.8 * diameter) / diameter;
     return out;
   };
-  const bool trace = getenv("TRACE2");
   const auto settle = [&](double tolerance, int most, bool free_period) {
     work.free_period(free_period);
     for (int step = 0; step < most; ++step) {
       work.look();
       out.force = work.force(), out.period_force = work.period_force();
-      if (trace) fprintf(stderr, "%d E %.8f force %.3e pf %.3e\n", out.steps, work.energy(), out.force, out.period_force);
       if (out.force < tolerance && out.period_force < tolerance) return;
       if (!work.step()) return;
       ++out.steps;
@@ -55,7 +53,6 @@ Relaxed relax(PeriodicYarns& yarns, const RelaxSettings& settings,
     else
       hardness = std::clamp(0.5 * (hardness + room), hardness, hard);
     if (share == 1 && hardness > 0.995 * hard && room > hard) hardness = hard;
-    if (trace) fprintf(stderr, "share %.3f hardness %.3f room %.3f\n", share, hardness, room);
     work.barrier(share, share * hardness);
     settle(0.1, 8, share > 0.6 || work.strain() > 0.02);
     out.thickness_share = share;

@@ -13,8 +13,7 @@ dvec3 edge_of(const PeriodicYarns& yarns, const YarnSegment& segment) {
   return yarns.points[segment.b] - yarns.points[segment.a] + dvec3(dvec2(segment.shift) * yarns.period, 0.0);
 }
 
-LocalTerm stretch_term(const PeriodicYarns& yarns, const YarnSegment& segment, double stiffness, Order order,
-                       double exactness) {
+LocalTerm stretch_term(const PeriodicYarns& yarns, const YarnSegment& segment, double stiffness, Order order) {
   LocalTerm out;
   out.count = 2;
   out.point[0] = segment.a, out.point[1] = segment.b;
@@ -25,17 +24,13 @@ LocalTerm stretch_term(const PeriodicYarns& yarns, const YarnSegment& segment, d
   const dvec3 t = v / length;
   const double pull = stiffness * strain;
   const double weight[] = {-1, 1};
-  // Under compression the Hessian is negative across the segment.
-  const double sideways = (pull > 0 ? pull : exactness * pull) / length;
-  out.add(weight, v, pull * t, stiffness / segment.length * glm::outerProduct(t, t) + sideways * across(t));
+  out.add(weight, v, pull * t, stiffness / segment.length * glm::outerProduct(t, t) + pull / length * across(t));
   return out;
 }
 
 // With P = 1 - t t^T and c = t1.t2: the gradient by v1 is -P1 t2 / (l0 l1), the mixed second derivative is
-// -P1 P2 / (l0 l1 l2), and that by v1 twice (c P1 + t1 (P1 t2)^T + (P1 t2) t1^T) / (l0 l1^2). Of |t2 - t1|^2 / 2 l0, the
-// same energy, the part that is never negative (Gauss and Newton's) has P1 / (l0 l1^2) there.
-LocalTerm bending_term(const PeriodicYarns& yarns, const YarnSegment& first, const YarnSegment& second, Order order,
-                       double exactness) {
+// -P1 P2 / (l0 l1 l2), and that by v1 twice (c P1 + t1 (P1 t2)^T + (P1 t2) t1^T) / (l0 l1^2).
+LocalTerm bending_term(const PeriodicYarns& yarns, const YarnSegment& first, const YarnSegment& second, Order order) {
   LocalTerm out;
   out.count = 3;
   out.point[0] = first.a, out.point[1] = first.b, out.point[2] = second.b;
@@ -49,8 +44,7 @@ LocalTerm bending_term(const PeriodicYarns& yarns, const YarnSegment& first, con
   const dmat3 p1 = across(t1), p2 = across(t2);
   const dvec3 side1 = p1 * t2, side2 = p2 * t1;
   const auto twice = [&](const dmat3& p, const dvec3& t, const dvec3& side, double l) {
-    const dmat3 rest = (cosine - 1) * p + glm::outerProduct(t, side) + glm::outerProduct(side, t);
-    return stiffness / (l * l) * (p + exactness * rest);
+    return stiffness / (l * l) * (cosine * p + glm::outerProduct(t, side) + glm::outerProduct(side, t));
   };
   const double weight1[] = {-1, 1, 0}, weight2[] = {0, -1, 1};
   out.add(weight1, v1, -stiffness / l1 * side1, twice(p1, t1, side1, l1));

@@ -8,14 +8,10 @@ namespace wale {
 dvec3 edge_of(const PeriodicYarns& yarns, const YarnSegment& segment);
 
 /// K/2 l0 (|v|/l0 - 1)^2 of a segment v of rest length l0.
-///
-/// `exactness` in [0, 1] here and below: 1 gives the Hessian, 0 a part of it that is never negative.
-LocalTerm stretch_term(const PeriodicYarns& yarns, const YarnSegment& segment, double stiffness, Order order,
-                       double exactness);
+LocalTerm stretch_term(const PeriodicYarns& yarns, const YarnSegment& segment, double stiffness, Order order);
 
 /// 1/l0 (1 - t1.t2) of two segments that follow one another, directions t: for small angles the energy
 /// 1/2 l0 curvature^2 of a rod with bending stiffness 1.
-LocalTerm bending_term(const PeriodicYarns& yarns, const YarnSegment& first, const YarnSegment& second, Order order,
-                       double exactness);
+LocalTerm bending_term(const PeriodicYarns& yarns, const YarnSegment& first, const YarnSegment& second, Order order);
 
 }  // namespace wale
