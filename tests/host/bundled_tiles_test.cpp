@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "geom/chart/knit_tile.h"
+#include "geom/error.h"
 #include "geom/stitch.h"
 #include "host/world.h"
 #include "tests/tolerances.h"
