@@ -122,7 +122,9 @@ Pattern parse_pattern_json(std::string_view text, const std::filesystem::path& p
 
 void write_pattern_json(const Pattern& pattern, const std::filesystem::path& file) {
   std::string out = "{\n \"wale_tile\": 1,\n \"name\": " + safe_text(pattern.name);
-  const auto key = [&](const char* name, const std::string& value) { out += fmt::format(",\n \"{}\": {}", name, value); };
+  const auto key = [&](const char* name, const std::string& value) {
+    out += fmt::format(",\n \"{}\": {}", name, value);
+  };
   key("period", numbers({pattern.period.x, pattern.period.y}));
   key("yarn_radius", Json(pattern.yarn_radius).dump());
   if (pattern.stitches.x > 0 && pattern.stitches.y > 0)

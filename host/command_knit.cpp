@@ -18,7 +18,8 @@ constexpr double kPerMetre = 1e3, kTenCentimetres = 0.1;
 std::string reached_text(const KnittedTile& tile) {
   const Relaxed& r = tile.relaxed;
   return fmt::format(
-      "after {} steps the yarn has {:.0f} % of its thickness, the largest force is {:.3g} and that on the period {:.3g} "
+      "after {} steps the yarn has {:.0f} % of its thickness, the largest force is {:.3g} and that on the period "
+      "{:.3g} "
       "(wanted {:g}), the closest distance {:.3f} yarn diameters",
       r.steps, 100 * r.thickness_share, r.force, r.period_force, tile.force_wanted, r.closest);
 }
@@ -30,9 +31,10 @@ void refuse_if_not_reached(const KnitArgs& args, const KnittedTile& tile) {
     user_error("{}: could not be relaxed, nothing is written: {}; a longer loop or a finer step may do", chart,
                reached_text(tile));
   if (!tile.gauge_reached)
-    user_error("{}: no loop length gives this gauge; the nearest is {:.2f} wales and {:.2f} courses per 10 cm, with "
-               "--loop {:.4f}",
-               chart, kTenCentimetres * tile.gauge.x, kTenCentimetres * tile.gauge.y, kPerMetre * tile.loop_length);
+    user_error(
+        "{}: no loop length gives this gauge; the nearest is {:.2f} wales and {:.2f} courses per 10 cm, with "
+        "--loop {:.4f}",
+        chart, kTenCentimetres * tile.gauge.x, kTenCentimetres * tile.gauge.y, kPerMetre * tile.loop_length);
 }
 
 std::string report_text(const KnittedTile& tile, double seconds) {

@@ -82,9 +82,7 @@ LocalStage local_stage(const IntegratorScene& integrator) {
 }
 
 Joints joints(const IntegratorScene& integrator) {
-  return integrator.joints == "open"      ? Joints::open
-         : integrator.joints == "capsule" ? Joints::capsule
-                                          : Joints::mitre;
+  return integrator.joints == "open" ? Joints::open : integrator.joints == "capsule" ? Joints::capsule : Joints::mitre;
 }
 
 // Told before anything is compiled.

@@ -60,8 +60,7 @@ void refuse_if_too_large(const BaseMesh& mesh, const Pattern& pattern, const Fab
 }
 
 void knit(const Scene& scene, const FabricScene& fabric, const Pattern& pattern, const std::string& obstacle,
-          BaseMesh mesh,
-          KnittedFabric& out) {
+          BaseMesh mesh, KnittedFabric& out) {
   require_uv(mesh);
   if (const size_t joined = join_duplicate_vertices(mesh))
     out.notes.push_back(fmt::format("fabric \"{}\": {} vertices in the place of another one are joined to it",

@@ -127,7 +127,8 @@ bool colors_need_places(const PlyAppearance& yarn, const ColorImage& image) {
 }
 
 bool colors_vary(const PlyAppearance& yarn, const ColorImage& image, const std::vector<Rgb>& yarns) {
-  return !yarns.empty() || colors_need_places(yarn, image) || !yarn.plies.empty() || yarn.heather_yarn > 0 || yarn.heather_ply > 0;
+  return !yarns.empty() || colors_need_places(yarn, image) || !yarn.plies.empty() || yarn.heather_yarn > 0 ||
+         yarn.heather_ply > 0;
 }
 
 std::vector<Rgb> yarn_colors(const FabricScene& fabric, const Pattern& pattern) {

@@ -20,7 +20,8 @@ uint32_t pack_ply_color(const Rgb& color);
 /// What the device reads out of it; zeros where none is given.
 Rgb unpack_ply_color(uint32_t word);
 
-/// What yarns of the tile are coloured by PatternCurve::yarn: the scene's palette, else the tile's; empty: the material's.
+/// What yarns of the tile are coloured by PatternCurve::yarn: the scene's palette, else the tile's; empty: the
+/// material's.
 std::vector<Rgb> yarn_colors(const FabricScene& fabric, const Pattern& pattern);
 
 /// The word of each of a fabric's vertices (Fabric::anchors): the colour of the segment that starts there. The stitch's

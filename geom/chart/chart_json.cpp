@@ -34,8 +34,7 @@ ChartRow row_of(const JsonValue& value, const std::string& where, std::vector<Ch
     for (const JsonValue& item : stitches.items()) {
       ++number;
       std::vector<ChartYarn> none{{}};
-      const ChartRow alone =
-          parse_chart_row(item.text(), fmt::format("{}, stitch {}", where, number), 1, none, true);
+      const ChartRow alone = parse_chart_row(item.text(), fmt::format("{}, stitch {}", where, number), 1, none, true);
       word_of.insert(word_of.end(), alone.cells.size(), number);
     }
     text = words_of(stitches, where, "word of stitches");

@@ -14,7 +14,8 @@ namespace {
 constexpr double kShortest = 6, kLongest = 100;
 constexpr double kNanometres = 1e9;  // per metre
 // Of yarns that the chart gives no colour.
-constexpr std::array<std::array<uint8_t, 3>, 4> kColors = {{{29, 63, 114}, {239, 227, 200}, {140, 47, 38}, {74, 107, 66}}};
+constexpr std::array<std::array<uint8_t, 3>, 4> kColors = {
+    {{29, 63, 114}, {239, 227, 200}, {140, 47, 38}, {74, 107, 66}}};
 
 void require(double value, double least, double most, const char* what, const char* unit, double per_unit) {
   if (!(value >= least && value <= most))
@@ -44,7 +45,8 @@ dvec3 rounded(const dvec3& p) { return {rounded(p.x), rounded(p.y), rounded(p.z)
 std::vector<std::array<uint8_t, 3>> palette_of(const StitchChart& chart) {
   if (chart.yarns.size() == 1 && !chart.yarns[0].color) return {};
   std::vector<std::array<uint8_t, 3>> palette;
-  for (size_t i = 0; i < chart.yarns.size(); ++i) palette.push_back(chart.yarns[i].color.value_or(kColors[i % kColors.size()]));
+  for (size_t i = 0; i < chart.yarns.size(); ++i)
+    palette.push_back(chart.yarns[i].color.value_or(kColors[i % kColors.size()]));
   return palette;
 }
 
@@ -131,9 +133,8 @@ KnittedTile knit_to_gauge(const StitchChart& chart, const Knit& knit, const Knit
   const auto miss = [&](const KnittedTile& tile) { return std::abs(tile.gauge[axis] / wanted - 1); };
   int tries = 0;
   while (tries < kTries) {
-    KnittedTile tile = knit_once(chart, knit, settings, length, [&](double share) {
-      return !progress || progress((tries + share) / kTries);
-    });
+    KnittedTile tile = knit_once(chart, knit, settings, length,
+                                 [&](double share) { return !progress || progress((tries + share) / kTries); });
     ++tries;
     if (tile.stopped) {
       tile.tries = tries;

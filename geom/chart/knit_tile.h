@@ -10,11 +10,11 @@ namespace wale {
 
 /// How a chart is knitted. Lengths in metres.
 struct KnitSettings {
-  double yarn_thickness = 1e-3;      ///< diameter
-  double loop_length = 0;            ///< yarn in one stitch; 0: kPlainLoop yarn diameters
-  double step = 0.6;                 ///< length of a segment, in yarn diameters
-  dvec2 tension{0, 0};               ///< along the course and the wale: RelaxSettings::tension
-  std::optional<dvec2> period;       ///< of the tile, held; else it is free
+  double yarn_thickness = 1e-3;          ///< diameter
+  double loop_length = 0;                ///< yarn in one stitch; 0: kPlainLoop yarn diameters
+  double step = 0.6;                     ///< length of a segment, in yarn diameters
+  dvec2 tension{0, 0};                   ///< along the course and the wale: RelaxSettings::tension
+  std::optional<dvec2> period;           ///< of the tile, held; else it is free
   std::optional<double> wales, courses;  ///< gauge to reach by the loop length, per metre; at most one of them
 };
 

@@ -70,8 +70,8 @@ class Machine {
       rack_ = rack;
     } else if (op == "split" || op == "amiss") {
       fail(fmt::format("{} is not read; valid: knit, tuck, miss, xfer, drop, rack, and carriers in and out", op));
-    } else if (op != "in" && op != "inhook" && op != "out" && op != "outhook" && op != "releasehook" &&
-               op != "pause" && !op.starts_with("x-")) {
+    } else if (op != "in" && op != "inhook" && op != "out" && op != "outhook" && op != "releasehook" && op != "pause" &&
+               !op.starts_with("x-")) {
       fail(fmt::format("\"{}\" is no instruction; valid: knit, tuck, miss, xfer, drop, rack, and carriers in and out",
                        one_line(std::string(op))));
     }
@@ -82,8 +82,10 @@ class Machine {
     if (rows_.empty()) user_error("{}: no stitches", file_);
     RepeatUnit unit = repeat_unit(rows_);
     if (unit.rows.empty())
-      user_error("{}: no unit of stitches repeats in the middle of its {} rows ({} to {}); at least two repeats across "
-                 "and two up are needed", file_, rows_.size(), rows_.front().where, rows_.back().where);
+      user_error(
+          "{}: no unit of stitches repeats in the middle of its {} rows ({} to {}); at least two repeats across "
+          "and two up are needed",
+          file_, rows_.size(), rows_.front().where, rows_.back().where);
     for (size_t r = 0; r < unit.rows.size(); ++r) {
       const Reach& reach = reach_[unit.first_row + r];
       if (reach.first > unit.first_wale || reach.last < unit.last_wale)
@@ -219,7 +221,10 @@ class Machine {
     }
     if (loops.size() > 2 || needle.back || !worked || tucks)
       user_error("{}:{}: {} loops on needle {} are {}; two that are knitted on the front bed can be read", file_,
-                 pass.line, loops.size(), needle_text(needle), !worked ? "left alone" : tucks ? "tucked" : "taken together");
+                 pass.line, loops.size(), needle_text(needle),
+                 !worked ? "left alone"
+                 : tucks ? "tucked"
+                         : "taken together");
     return {loops[0].wale < loops[1].wale ? Stitch::k2tog : Stitch::ssk};
   }
 

@@ -18,7 +18,7 @@ struct Loop {
 
 /// What one yarn of a row does at each of its wales.
 struct Course {
-  int row = 0, yarn = 0;  ///< yarn: of the chart
+  int row = 0, yarn = 0;    ///< yarn: of the chart
   int lane = 0, lanes = 1;  ///< of `lanes` yarns of the row the lane-th, which float past each other in this order
 
   struct Place {

@@ -109,7 +109,7 @@ StitchChart parse_chart_text(std::string_view text, const std::filesystem::path&
 
 StitchChart parse_chart(std::string_view bytes, const std::filesystem::path& file) {
   const auto suffix = file.extension();
-  StitchChart chart = suffix == ".json"                       ? parse_chart_json(bytes, file)
+  StitchChart chart = suffix == ".json"                        ? parse_chart_json(bytes, file)
                       : suffix == ".knitout" || suffix == ".k" ? parse_knitout(bytes, file)
                                                                : parse_chart_text(bytes, file);
   if (chart.name.empty()) chart.name = file.stem().string();

@@ -92,8 +92,10 @@ TEST(StitchChart, YarnThatEndsInMidAir) {
   refused("k4 |\n", {"c.chart:1", "no yarn behind"});
 }
 TEST(StitchChart, YarnThatNoStitchHolds) { refused("kk\nss\n", {"c.chart:2:1", "held by none"}); }
-TEST(StitchChart, LoopThatIsNeverTaken) { refused("kt\nkt\n", {"c.chart:2:1", "the loop of wale 2", "never taken"});
-  refused("ks\nks\n", {"c.chart:2:1: wale 2 is slipped in every row"}); }
+TEST(StitchChart, LoopThatIsNeverTaken) {
+  refused("kt\nkt\n", {"c.chart:2:1", "the loop of wale 2", "never taken"});
+  refused("ks\nks\n", {"c.chart:2:1: wale 2 is slipped in every row"});
+}
 TEST(StitchChart, UnnamedYarn) {
   refused("yarn a: #000000\nkk | ab\n", {"c.chart:2:7", "no yarn is called b; there are a"});
   refused("kk | A\n", {"c.chart:1:6", "letters a to z"});
