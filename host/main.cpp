@@ -75,6 +75,7 @@ void add_knit_options(CLI::App& command, wale::KnitArgs& args) {
   scaled("--courses", 10, "courses per 10 cm to reach by the loop length", [&s](double v) { s.courses = v; });
   scaled("--step", 1, "resolution: length of a segment in yarn diameters; 0.6 unless given",
          [&s](double v) { s.step = v; });
+  command.add_option("--steps", s.max_steps, "steps of the relaxation, at most")->check(CLI::Range(1, 1 << 24));
   scaled("--course-tension", 1, "pull along the rows, bending stiffness / diameter^3",
          [&s](double v) { s.tension.x = v; });
   scaled("--wale-tension", 1, "pull along the columns", [&s](double v) { s.tension.y = v; });

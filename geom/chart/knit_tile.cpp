@@ -95,6 +95,7 @@ KnittedTile knit_once(const StitchChart& chart, const Knit& knit, const KnitSett
   PeriodicYarns yarns = loop_curves(knit, {0.5 * settings.yarn_thickness, diameters, settings.step});
   RelaxSettings relaxing;
   relaxing.tension = settings.tension;
+  relaxing.max_steps = settings.max_steps;
   if (settings.period) {
     const dvec2 stretch = *settings.period / yarns.period;
     for (dvec3& p : yarns.points) p *= dvec3(stretch, 1);

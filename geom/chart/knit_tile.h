@@ -13,6 +13,7 @@ struct KnitSettings {
   double yarn_thickness = 1e-3;          ///< diameter
   double loop_length = 0;                ///< yarn in one stitch; 0: kPlainLoop yarn diameters
   double step = 0.6;                     ///< length of a segment, in yarn diameters
+  int max_steps = RelaxSettings().max_steps;  ///< of the relaxation
   dvec2 tension{0, 0};                   ///< along the course and the wale: RelaxSettings::tension
   std::optional<dvec2> period;           ///< of the tile, held; else it is free
   std::optional<double> wales, courses;  ///< gauge to reach by the loop length, per metre; at most one of them

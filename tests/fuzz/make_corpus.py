@@ -65,7 +65,7 @@ def patterns():
 def charts():
     write("chart", "rib", "name: rib\nk2 p2\n")
     write("chart", "lace", "# holes\nk6\nk3 yo k2tog k\nk6\nssk o k4\n")
-    write("chart", "cable", "p2k4p2\np2 c2/2f p2\np k c2/1b k3 p\n")
+    write("chart", "cable", "p2k4p2\np2 c2/2f p2\np k c2/1b k2 p\n")
     write("chart", "colors", "yarn a: #1d3f72\nyarn b:\nk4 | ab2a\nk s S k | b\nk4 | a\nk t T k | b\n")
     write("chart_json", "rows", json.dumps({"wale_chart": 1, "name": "two", "rows": ["k2 p2", ["k", "k", "p2"]]}))
     write("chart_json", "yarns", json.dumps({"wale_chart": 1, "yarns": {"a": "#102030", "b": None}, "rows": [
