@@ -63,7 +63,8 @@ struct PlyRun {
   uint32_t plies = 1;  ///< curves, 1 to 8
   Kind kind = Kind::ply;
   float radius = 0;   ///< of the curves, metres
-  uint32_t yarn = 0;  ///< full yarn that it was cut from
+  uint32_t yarn = 0;   ///< full yarn that it was cut from
+  uint32_t color = 0;  ///< PatternCurve::yarn of it
   uint32_t chart = 0;
   uint32_t ply = 0;          ///< kind fibre: of which ply of the yarn
   uint32_t first_place = 0;  ///< its first sample's Fabric::place, where they are filled

@@ -20,6 +20,7 @@ class FlatKnit::Layer {
  public:
   Layer(const Pattern& pattern, const PartnerMap& partners, TileSamples&& tile, const YarnSpec& spec, dvec3 scale)
       : tile_(std::move(tile)), spec_(spec), period_(pattern.period.x * scale.x, pattern.period.y * scale.y, 0) {
+    for (const PatternCurve& curve : pattern.curves) color_of_curve_.push_back(curve.yarn);
     if (spec.places) places_ = stitch_places(pattern, partners, tile_, scale);
     shapes_ = pattern.strains.offsets.size();
     for (int ply = 0; ply < spec.plies; ++ply) {
@@ -30,6 +31,7 @@ class FlatKnit::Layer {
 
   void lay(const YarnChain& chain, ivec2 end_instance, int end_curve, FlatYarn& yarn) const {
     yarn.closed = chain.closed;
+    yarn.color = color_of_curve_[size_t(chain.links[0].curve)];
     size_t count = chain.closed ? 3 : 1;
     for (const Link& link : chain.links) count += tile_.of_curve[link.curve].centre.size();
     yarn.centre.resize(count);
@@ -122,6 +124,7 @@ class FlatKnit::Layer {
 
   TileSamples tile_;
   YarnSpec spec_;
+  std::vector<int> color_of_curve_;
   StitchPlaces places_;
   dvec3 period_;
   size_t shapes_ = 0;  ///< of the pattern's strain table

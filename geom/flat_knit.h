@@ -37,6 +37,7 @@ void fill_yarn(YarnSpec& spec, double yarn_radius);
 /// neighbours.
 struct FlatYarn {
   bool closed = false;
+  int color = 0;  ///< PatternCurve::yarn
   std::vector<dvec3> centre;     ///< yarn axis, metres in the cloth: x course, y wale, z through the fabric
   std::vector<dvec3> position;   ///< ply axes
   std::vector<dvec3> normal;     ///< unit, perpendicular to the ply's mean tangent: double-reflection frame of the ply

@@ -1,7 +1,10 @@
 #pragma once
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "geom/strain_table.h"
@@ -17,6 +20,7 @@ enum class CurveKind { interpolating, bspline };
 struct PatternCurve {
   std::vector<dvec3> points;  ///< metres; x along the course, y along the wale, z through the fabric, 0 = mid-surface
   bool closed = false;
+  int yarn = 0;  ///< of what colour: index into Pattern::palette
 };
 
 /// A tile of relaxed yarn, periodic in x and y (KNIT21 section 3.1).
@@ -27,8 +31,14 @@ struct Pattern {
   ivec2 stitches{0, 0};    ///< wales and courses in one tile; estimated by the reader where the file does not say
   CurveKind kind = CurveKind::interpolating;
   std::vector<PatternCurve> curves;
+  std::vector<std::array<uint8_t, 3>> palette;  ///< sRGB colours of its yarns; empty: that of the material
+  std::vector<std::string> chart;               ///< rows of the chart that it was knitted from (docs/patterns.md) ...
+  std::vector<std::pair<std::string, double>> settings;  ///< ... and the settings, by name
   StrainTable strains;  ///< empty where it is not known how the tile gives way
 };
+
+/// Most yarns of different colours in one tile.
+constexpr int kMostYarns = 256;
 
 /// What a file does not say; zero means "take it from the file, or recover it".
 struct PatternHints {

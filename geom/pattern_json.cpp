@@ -1,11 +1,9 @@
 // Wale's own tile: {"wale_tile": 1, "name", "period": [x, y], "yarn_radius", "stitches": [wales, courses],
-// "kind": "interpolating" or "bspline", "curves": [{"points": [[x, y, z], ...], "closed": false}],
-// "strains": {"course": [a, ...], "wale": [b, ...], "offsets": [[[x, y, z], ...], ...]}}, in metres; strains.offsets as
-// in StrainTable.
-#include <algorithm>
-#include <initializer_list>
-#include <nlohmann/json.hpp>
-
+// "kind": "interpolating" or "bspline", "curves": [{"points": [[x, y, z], ...], "closed": false, "yarn": 0}]}, in
+// metres; "palette": ["#rrggbb", ...] has the colour of each yarn; "knitted_from": {"chart": [rows], "settings": {name:
+// number}}; "strains": {"course": [a, ...], "wale": [b, ...], "offsets": [[[x, y, z], ...], ...]}, as in StrainTable.
+#include "geom/chart/chart_row.h"
+#include "geom/json_value.h"
 #include "geom/pattern_readers.h"
 #include "geom/text_lines.h"
 
@@ -13,75 +11,7 @@ namespace wale {
 namespace {
 
 using Json = nlohmann::json;
-
-/// A value with the place it came from, such as "curves[3].points[0]", for the error message.
-class Value {
- public:
-  Value(const std::string& file, std::string place, const Json& json)
-      : file_(file), place_(std::move(place)), json_(json) {}
-
-  void only(std::initializer_list<const char*> keys) const {
-    if (!json_.is_object()) complain("an object is expected");
-    for (const auto& item : json_.items())
-      if (std::none_of(keys.begin(), keys.end(), [&](const char* key) { return item.key() == key; }))
-        complain(fmt::format("unknown key '{}'; the keys are {}", item.key(), fmt::join(keys, ", ")));
-  }
-  bool has(const char* key) const { return json_.contains(key); }
-  Value operator[](const char* key) const {
-    if (!json_.contains(key)) complain(fmt::format("key '{}' is missing", key));
-    return {file_, place_.empty() ? key : place_ + "." + key, json_.at(key)};
-  }
-  std::vector<Value> items() const {
-    if (!json_.is_array()) complain("a list is expected");
-    std::vector<Value> result;
-    for (size_t i = 0; i < json_.size(); ++i) result.push_back({file_, fmt::format("{}[{}]", place_, i), json_[i]});
-    return result;
-  }
-  std::vector<Value> items(size_t count) const {
-    if (!json_.is_array() || json_.size() != count) complain(fmt::format("a list of {} numbers is expected", count));
-    return items();
-  }
-  double number() const {
-    if (!json_.is_number()) complain("a number is expected");
-    const double value = json_.get<double>();
-    if (!std::isfinite(value)) complain("the number is not finite");
-    return value;
-  }
-  int whole() const {
-    if (!json_.is_number_integer()) complain("a whole number is expected");
-    const double value = json_.get<double>();
-    if (std::abs(value) > 1e9) complain("the number is too large");
-    return static_cast<int>(value);
-  }
-  bool truth() const {
-    if (!json_.is_boolean()) complain("true or false is expected");
-    return json_.get<bool>();
-  }
-  std::string text() const {
-    if (!json_.is_string()) complain("a text is expected");
-    return json_.get<std::string>();
-  }
-  [[noreturn]] void complain(const std::string& what) const {
-    user_error("{}: {}{}{}", file_, place_, place_.empty() ? "" : ": ", what);
-  }
-
- private:
-  const std::string& file_;
-  std::string place_;
-  const Json& json_;
-};
-
-Json parse(std::string_view text, const std::string& file) {
-  try {
-    return Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    const size_t at = std::min<size_t>(error.byte, text.size());
-    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(at > 0 ? at - 1 : 0), '\n');
-    user_error("{}:{}: {}", file, line, error.what());
-  } catch (const Json::exception& error) {  // a number beyond double
-    user_error("{}: {}", file, error.what());
-  }
-}
+using Value = JsonValue;
 
 std::vector<dvec3> read_points(const Value& value) {
   std::vector<dvec3> points;
@@ -90,12 +20,6 @@ std::vector<dvec3> read_points(const Value& value) {
     points.emplace_back(p[0].number(), p[1].number(), p[2].number());
   }
   return points;
-}
-
-nlohmann::ordered_json points_json(const std::vector<dvec3>& points) {
-  auto rows = nlohmann::ordered_json::array();
-  for (const dvec3& p : points) rows.push_back({p.x, p.y, p.z});
-  return rows;
 }
 
 StrainTable read_strains(const Value& value) {
@@ -109,20 +33,65 @@ StrainTable read_strains(const Value& value) {
 }
 
 PatternCurve read_curve(const Value& value) {
-  value.only({"points", "closed"});
+  value.only({"points", "closed", "yarn"});
   PatternCurve curve;
   curve.points = read_points(value["points"]);
   if (value.has("closed")) curve.closed = value["closed"].truth();
+  if (value.has("yarn")) {
+    curve.yarn = value["yarn"].whole();
+    if (curve.yarn < 0 || curve.yarn >= kMostYarns)
+      value["yarn"].complain(fmt::format("yarns are numbered from 0 to {}", kMostYarns - 1));
+  }
   return curve;
+}
+
+void read_palette(const Value& root, Pattern& pattern) {
+  if (root.has("palette"))
+    for (const Value& color : root["palette"].items()) {
+      const auto bytes = parse_color(color.text());
+      if (!bytes) color.complain(fmt::format("\"{}\" is no colour; valid: #rrggbb", one_line(color.text())));
+      pattern.palette.push_back(*bytes);
+    }
+  if (pattern.palette.empty()) return;
+  for (size_t c = 0; c < pattern.curves.size(); ++c)
+    if (size_t(pattern.curves[c].yarn) >= pattern.palette.size())
+      root["palette"].complain(fmt::format("curve {} is of yarn {}, but there are {} colours", c,
+                                           pattern.curves[c].yarn, pattern.palette.size()));
+}
+
+void read_origin(const Value& root, Pattern& pattern) {
+  if (!root.has("knitted_from")) return;
+  const Value from = root["knitted_from"];
+  from.only({"chart", "settings"});
+  for (const Value& row : from["chart"].items()) pattern.chart.push_back(row.text());
+  for (const std::string& key : from["settings"].keys())
+    pattern.settings.emplace_back(key, from["settings"][key.c_str()].number());
+}
+
+// Names may be any bytes, what is written is UTF-8.
+std::string safe_text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+// As json.dump, but a point is one line.
+std::string numbers(std::initializer_list<double> values) {
+  std::string out = "[";
+  for (const double v : values) out += (out.size() > 1 ? ", " : "") + Json(v).dump();
+  return out + "]";
+}
+
+std::string points_text(const std::vector<dvec3>& points) {
+  std::string out;
+  for (const dvec3& p : points) out += (out.empty() ? "\n   " : ",\n   ") + numbers({p.x, p.y, p.z});
+  return "[" + out + "]";
 }
 
 }  // namespace
 
 Pattern parse_pattern_json(std::string_view text, const std::filesystem::path& path, const PatternHints& hints) {
   const std::string file = path.string();
-  const Json json = parse(text, file);
+  const Json json = parse_json(text, file);
   const Value root(file, "", json);
-  root.only({"wale_tile", "name", "period", "yarn_radius", "stitches", "kind", "curves", "strains"});
+  root.only({"wale_tile", "name", "period", "yarn_radius", "stitches", "kind", "curves", "palette", "knitted_from",
+             "strains"});
   if (root["wale_tile"].whole() != 1) root["wale_tile"].complain("only version 1 is known");
   Pattern pattern;
   if (root.has("name")) pattern.name = root["name"].text();
@@ -145,33 +114,45 @@ Pattern parse_pattern_json(std::string_view text, const std::filesystem::path& p
     root["kind"].complain(fmt::format("'{}' is not known; choose interpolating or bspline", kind));
   pattern.kind = kind == "bspline" ? CurveKind::bspline : CurveKind::interpolating;
   for (const Value& curve : root["curves"].items()) pattern.curves.push_back(read_curve(curve));
+  read_palette(root, pattern);
+  read_origin(root, pattern);
   if (root.has("strains")) pattern.strains = read_strains(root["strains"]);
   return pattern;
 }
 
 void write_pattern_json(const Pattern& pattern, const std::filesystem::path& file) {
-  nlohmann::ordered_json json;
-  json["wale_tile"] = 1;
-  json["name"] = pattern.name;
-  json["period"] = {pattern.period.x, pattern.period.y};
-  json["yarn_radius"] = pattern.yarn_radius;
-  if (pattern.stitches.x > 0 && pattern.stitches.y > 0) json["stitches"] = {pattern.stitches.x, pattern.stitches.y};
-  json["kind"] = pattern.kind == CurveKind::bspline ? "bspline" : "interpolating";
-  json["curves"] = Json::array();
-  for (const PatternCurve& curve : pattern.curves) {
-    nlohmann::ordered_json item;
-    item["points"] = points_json(curve.points);
-    item["closed"] = curve.closed;
-    json["curves"].push_back(std::move(item));
+  std::string out = "{\n \"wale_tile\": 1,\n \"name\": " + safe_text(pattern.name);
+  const auto key = [&](const char* name, const std::string& value) {
+    out += fmt::format(",\n \"{}\": {}", name, value);
+  };
+  key("period", numbers({pattern.period.x, pattern.period.y}));
+  key("yarn_radius", Json(pattern.yarn_radius).dump());
+  if (pattern.stitches.x > 0 && pattern.stitches.y > 0)
+    key("stitches", fmt::format("[{}, {}]", pattern.stitches.x, pattern.stitches.y));
+  key("kind", pattern.kind == CurveKind::bspline ? "\"bspline\"" : "\"interpolating\"");
+  if (!pattern.palette.empty()) {
+    std::string colors;
+    for (const auto& c : pattern.palette)
+      colors += fmt::format("{}\"#{:02x}{:02x}{:02x}\"", colors.empty() ? "" : ", ", c[0], c[1], c[2]);
+    key("palette", "[" + colors + "]");
   }
+  if (!pattern.chart.empty()) {
+    nlohmann::ordered_json settings = nlohmann::ordered_json::object();
+    for (const auto& [name, value] : pattern.settings) settings[name] = value;
+    key("knitted_from", "{\n  \"chart\": " + safe_text(pattern.chart) + ",\n  \"settings\": " + settings.dump() + "}");
+  }
+  std::string curves;
+  for (const PatternCurve& curve : pattern.curves)
+    curves += fmt::format("{}\n  {{\"yarn\": {}, \"closed\": {}, \"points\": {}}}", curves.empty() ? "" : ",",
+                          curve.yarn, curve.closed, points_text(curve.points));
+  key("curves", "[" + curves + "]");
   if (const StrainTable& strains = pattern.strains; !strains.empty()) {
-    nlohmann::ordered_json& item = json["strains"];
-    item["course"] = strains.course;
-    item["wale"] = strains.wale;
-    item["offsets"] = nlohmann::ordered_json::array();
-    for (const auto& shape : strains.offsets) item["offsets"].push_back(points_json(shape));
+    std::string offsets;
+    for (const auto& shape : strains.offsets) offsets += (offsets.empty() ? "\n   " : ",\n   ") + points_text(shape);
+    key("strains", fmt::format("{{\n  \"course\": {},\n  \"wale\": {},\n  \"offsets\": [{}]}}",
+                               Json(strains.course).dump(), Json(strains.wale).dump(), offsets));
   }
-  write_whole_file(file, json.dump(1) + "\n");
+  write_whole_file(file, out + "\n}\n");
 }
 
 }  // namespace wale

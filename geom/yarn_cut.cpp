@@ -58,6 +58,7 @@ bool YarnCutter::jumps(const Sample& a, const Sample& b) const {
 }
 
 void YarnCutter::add(FlatYarn& yarn) {
+  color_ = static_cast<uint32_t>(yarn.color);
   const size_t total = yarn.centre.size();
   // A closed yarn's own samples are 1 .. K-3; 0, K-2 and K-1 repeat them.
   const size_t first = yarn.closed ? 1 : 0, count = yarn.closed ? total - 3 : total;
@@ -139,6 +140,7 @@ void YarnCutter::begin_run(const Stretch& stretch, PlyRun::Kind kind, size_t cur
   run.kind = kind;
   run.radius = static_cast<float>(radius);
   run.yarn = yarn_number();
+  run.color = color_;
   run.chart = chart_;
   run.ghost_ends = stretch.ghost_ends;
   run.first_place = first_place_;

@@ -97,6 +97,7 @@ class YarnCutter {
   std::vector<uint32_t> fibre_order_, fibre_groups_;
   std::vector<dvec3> shift_, unstrained_, tangent_, strained_tangent_;  ///< of follow_strain
   double strand_ = 0;                                                   ///< metres of yarn laid so far
+  uint32_t color_ = 0;        ///< of the yarn that is being added
   uint32_t first_place_ = 0;                                            ///< of the stretch that is being added
 };
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "geom/chart/knit_tile.h"
 #include "host/features.h"
 #include "host/world.h"
 
@@ -27,6 +28,14 @@ struct RenderArgs : SceneArgs {
   std::filesystem::path stats;
 };
 
+struct KnitArgs {
+  std::filesystem::path chart, output, json;
+  KnitSettings settings;
+  double loop_diameters = 0;  ///< in place of settings.loop_length; 0: not given
+  std::string period;  ///< "WIDTHxHEIGHT" in millimetres; empty: free
+  bool quiet = false;
+};
+
 /// Puts "WIDTHxHEIGHT" into the film's size; throws a user error for anything else.
 void apply_size(const std::string& size, FilmScene& film);
 
@@ -41,6 +50,8 @@ int run_render(const RenderArgs& args, const Loaders& loaders);
 int run_build(const SceneArgs& args, const std::filesystem::path& json, const Loaders& loaders);
 int run_plan(const SceneArgs& args, const std::filesystem::path& json, const Loaders& loaders);
 int run_export(const SceneArgs& args, const std::filesystem::path& output, const Loaders& loaders);
+/// Writes the relaxed tile of a chart. Throws a user error, and writes nothing, where it cannot be relaxed.
+int run_knit(const KnitArgs& args);
 int run_compare(const std::filesystem::path& a, const std::filesystem::path& b, double max_rmse);
 int run_devices();
 int run_schema();

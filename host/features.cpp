@@ -127,6 +127,17 @@ Features analyse(const World& world, const IntegratorScene& integrator, bool aov
   return f;
 }
 
+namespace {
+// What cannot be read is said where it is knitted.
+std::vector<Rgb> foreseen_colors(const FabricScene& fabric) {
+  try {
+    return yarn_colors(fabric, fabric.palette ? Pattern() : load_pattern(fabric.pattern));
+  } catch (const Error&) {
+    return {};
+  }
+}
+}  // namespace
+
 Features foresee(const Scene& scene, bool aovs, const DeviceTraits& traits) {
   Features f;
   for (const auto& fabric : scene.fabrics) {
@@ -135,7 +146,7 @@ Features foresee(const Scene& scene, bool aovs, const DeviceTraits& traits) {
     f.plies |= !fibres;
     f.fibres |= fibres || fabric.spec.flyaways.any();
     f.detail |= fabric.spec.detail == Detail::maps || fabric.spec.detail == Detail::paper;
-    f.ply_colors |= colors_vary(yarn, fabric.color_image);
+    f.ply_colors |= colors_vary(yarn, fabric.color_image, foreseen_colors(fabric));
     const bool procedural = fabric.spec.storage == Storage::procedural, lattice = fabric.spec.lattice > 0;
     f.mesh_warp |= !lattice && !procedural;
     f.stored_lattice |= lattice && !procedural;

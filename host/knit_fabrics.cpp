@@ -24,7 +24,7 @@ namespace wale {
 namespace {
 
 // Colours that vary are stored per vertex; the cell stages list stored segments.
-std::string lattice_obstacle_of_scene(const Scene& scene) {
+std::string lattice_obstacle_of_scene(const Scene& scene, const std::vector<Pattern>& patterns) {
   if (const std::string& stage = scene.integrator.local_stage; stage != "exact") {
     const std::string& preset = scene.accuracy_preset;
     std::string set_by;
@@ -34,9 +34,12 @@ std::string lattice_obstacle_of_scene(const Scene& scene) {
           set_by = fmt::format(" (--preset {} sets it; --set integrator.local_stage=exact undoes that)", preset);
     return fmt::format("integrator.local_stage is \"{}\"{}", stage, set_by);
   }
-  for (const auto& fabric : scene.fabrics)
-    if (colors_vary(scene.materials.at(size_t(fabric.material)).yarn, fabric.color_image))
+  for (size_t i = 0; i < scene.fabrics.size(); ++i) {
+    const FabricScene& fabric = scene.fabrics[i];
+    if (colors_vary(scene.materials.at(size_t(fabric.material)).yarn, fabric.color_image,
+                    yarn_colors(fabric, patterns[i])))
       return fmt::format("colours vary over fabric \"{}\"", fabric.spec.name);
+  }
   return {};
 }
 
@@ -65,15 +68,15 @@ void refuse_if_too_large(const BaseMesh& mesh, const Pattern& pattern, const Fab
         spec.name, segments, segments * bytes * 1e-9, memory * 1e-9);
 }
 
-void knit(const Scene& scene, const FabricScene& fabric, const std::string& obstacle, BaseMesh mesh,
-          KnittedFabric& out) {
+void knit(const Scene& scene, const FabricScene& fabric, const Pattern& pattern, const std::string& obstacle,
+          BaseMesh mesh, KnittedFabric& out) {
   require_uv(mesh);
   if (const size_t joined = join_duplicate_vertices(mesh))
     out.notes.push_back(fmt::format("fabric \"{}\": {} vertices in the place of another one are joined to it",
                                     fabric.spec.name, joined));
   transform_mesh(mesh, fabric.transform);
   refuse_if_out_of_reach(mesh, fabric.spec.name);
-  const Pattern pattern = load_pattern(fabric.pattern);
+  out.yarn_colors = yarn_colors(fabric, pattern);
   const PlyAppearance& yarn = scene.materials.at(size_t(fabric.material)).yarn;
   FabricSpec spec = fabric.spec;
   spec.fibres = fibre_recipe(yarn);
@@ -93,11 +96,13 @@ void knit(const Scene& scene, const FabricScene& fabric, const std::string& obst
 
 std::vector<KnittedFabric> knit_fabrics(const Scene& scene, const Loaders& loaders,
                                         const std::function<void(double)>& progress) {
-  const std::string obstacle = lattice_obstacle_of_scene(scene);
   const size_t count = scene.fabrics.size();
   // One after the other: readers of meshes keep a state.
   std::vector<BaseMesh> meshes;
   for (const FabricScene& fabric : scene.fabrics) meshes.push_back(load_mesh(fabric.mesh, loaders));
+  std::vector<Pattern> patterns;
+  for (const FabricScene& fabric : scene.fabrics) patterns.push_back(load_pattern(fabric.pattern));
+  const std::string obstacle = lattice_obstacle_of_scene(scene, patterns);
   std::vector<KnittedFabric> out(count);
   std::vector<std::exception_ptr> failed(count);
   std::mutex mutex;
@@ -108,7 +113,7 @@ std::vector<KnittedFabric> knit_fabrics(const Scene& scene, const Loaders& loade
   const auto threads = unsigned(std::min<size_t>(count, std::max(1u, std::thread::hardware_concurrency())));
   run_tasks(threads, std::move(numbers), [&](size_t i, const auto&) {
     try {
-      knit(scene, scene.fabrics[i], obstacle, std::move(meshes[i]), out[i]);
+      knit(scene, scene.fabrics[i], patterns[i], obstacle, std::move(meshes[i]), out[i]);
     } catch (...) {
       failed[i] = std::current_exception();
     }

@@ -10,6 +10,7 @@ namespace wale {
 struct KnittedFabric {
   Fabric fabric;
   MeshReport mesh_report;
+  std::vector<Rgb> yarn_colors;    ///< as yarn_colors() says
   std::vector<std::string> notes;  ///< what was mended or chosen, one line each
 };
 

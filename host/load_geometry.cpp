@@ -2,6 +2,7 @@
 
 #include "geom/base_mesh_generators.h"
 #include "geom/error.h"
+#include "host/bundled_tiles.h"
 #include "host/world.h"
 
 namespace wale {
@@ -27,7 +28,9 @@ void transform_mesh(BaseMesh& mesh, const Transform& t) {
 }
 
 Pattern load_pattern(const PatternSource& s) {
-  return s.file.empty() ? stockinette_pattern() : read_pattern(s.file, s.hints);
+  if (!s.file.empty()) return read_pattern(s.file, s.hints);
+  if (s.builtin == "stockinette" || s.builtin.empty()) return stockinette_pattern();
+  return parse_pattern(embedded_tiles().at(s.builtin + ".json"), s.builtin + ".json");
 }
 
 }  // namespace wale

@@ -56,6 +56,34 @@ void add_features_option(CLI::App& command, wale::Features& also) {
       ->check(CLI::IsMember({"needed", "all"}));
 }
 
+// Lengths on the command line are millimetres, gauges per 10 cm.
+void add_knit_options(CLI::App& command, wale::KnitArgs& args) {
+  wale::KnitSettings& s = args.settings;
+  const auto scaled = [&command](const char* name, double scale, const char* doc, std::function<void(double)> set) {
+    return command.add_option_function<double>(name, [scale, set](const double& v) { set(v * scale); }, doc)
+        ->check(finite_number(std::string_view(name).ends_with("tension")));
+  };
+  command.add_option("CHART", args.chart, "stitch chart: text, .json or .knitout")->required();
+  command.add_option("-o,--output", args.output, "tile to write (.json)")->required();
+  scaled("--yarn", 1e-3, "thickness of the yarn, mm; 1 unless given", [&s](double v) { s.yarn_thickness = v; });
+  auto* loop = scaled("--loop", 1e-3, "yarn in one stitch, mm", [&s](double v) { s.loop_length = v; });
+  auto* diameters = command.add_option("--loop-diameters", args.loop_diameters,
+                                       "yarn in one stitch, in yarn diameters; 13.2 unless given")
+                        ->check(finite_number(false));
+  diameters->excludes(loop);
+  scaled("--wales", 10, "wales per 10 cm to reach by the loop length", [&s](double v) { s.wales = v; });
+  scaled("--courses", 10, "courses per 10 cm to reach by the loop length", [&s](double v) { s.courses = v; });
+  scaled("--step", 1, "resolution: length of a segment in yarn diameters; 0.6 unless given",
+         [&s](double v) { s.step = v; });
+  command.add_option("--steps", s.max_steps, "steps of the relaxation, at most")->check(CLI::Range(1, 1 << 24));
+  scaled("--course-tension", 1, "pull along the rows, bending stiffness / diameter^3",
+         [&s](double v) { s.tension.x = v; });
+  scaled("--wale-tension", 1, "pull along the columns", [&s](double v) { s.tension.y = v; });
+  command.add_option("--period", args.period, "WIDTHxHEIGHT of the tile in mm, held; free unless given");
+  command.add_option("--json", args.json, "write the report as JSON (- for the terminal)");
+  command.add_flag("--quiet", args.quiet, "no progress");
+}
+
 // What CLI11 could not place, with the nearest valid word.
 std::string advice(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> left = app.remaining(true);
@@ -128,6 +156,10 @@ int run(int argc, char** argv) {
   add_device_options(*c, scene, "its number");
   c->add_option("-o,--output", output, "file to write")->required();
   c->callback([&] { status = wale::run_export(scene, output, loaders); });
+  wale::KnitArgs knit;
+  c = app.add_subcommand("knit", "relax a stitch chart into a tile of yarn");
+  add_knit_options(*c, knit);
+  c->callback([&] { status = wale::run_knit(knit); });
   c = app.add_subcommand("compare", "compare two images");
   c->add_option("A", image_a, "image")->required();
   c->add_option("B", image_b, "reference image")->required();

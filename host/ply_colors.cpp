@@ -7,6 +7,7 @@
 
 #include "geom/error.h"
 #include "host/materials.h"
+#include "host/schema.h"
 #include "host/thick_layer.h"
 
 namespace wale {
@@ -25,8 +26,8 @@ int modulo(int a, int b) { return (a % b + b) % b; }
 /// Colours that the cloth shows, by place.
 class Palette {
  public:
-  Palette(const PlyAppearance& yarn, const ColorImage& image, const Image& pixels)
-      : yarn_(yarn), image_(image), pixels_(pixels) {
+  Palette(const PlyAppearance& yarn, const ColorImage& image, const Image& pixels, const std::vector<Rgb>& yarns)
+      : yarn_(yarn), image_(image), pixels_(pixels), yarns_(yarns) {
     for (const Stripe& stripe : yarn.stripes) stripes_ += stripe.length;
     if (image.file.empty()) return;
     for (int y = 0; y < pixels.height; ++y)
@@ -38,7 +39,7 @@ class Palette {
   }
 
   /// Nothing where the material's own colour holds.
-  std::optional<Rgb> at(const StrandPlace* place, int ply) const {
+  std::optional<Rgb> at(const StrandPlace* place, int ply, uint32_t yarn) const {
     if (place && !image_.file.empty())
       if (const auto color = of_stitch(*place)) return color;
     if (place && !yarn_.stripes.empty()) {
@@ -51,6 +52,7 @@ class Palette {
       return yarn_.stripes.back().color;
     }
     if (!yarn_.plies.empty()) return yarn_.plies[size_t(ply) % yarn_.plies.size()];
+    if (!yarns_.empty()) return yarns_[yarn % yarns_.size()];
     return std::nullopt;
   }
 
@@ -81,6 +83,7 @@ class Palette {
   const PlyAppearance& yarn_;
   const ColorImage& image_;
   const Image& pixels_;
+  const std::vector<Rgb>& yarns_;
   double stripes_ = 0;
 };
 
@@ -123,8 +126,20 @@ bool colors_need_places(const PlyAppearance& yarn, const ColorImage& image) {
   return !yarn.stripes.empty() || !image.file.empty();
 }
 
-bool colors_vary(const PlyAppearance& yarn, const ColorImage& image) {
-  return colors_need_places(yarn, image) || !yarn.plies.empty() || yarn.heather_yarn > 0 || yarn.heather_ply > 0;
+bool colors_vary(const PlyAppearance& yarn, const ColorImage& image, const std::vector<Rgb>& yarns) {
+  return !yarns.empty() || colors_need_places(yarn, image) || !yarn.plies.empty() || yarn.heather_yarn > 0 ||
+         yarn.heather_ply > 0;
+}
+
+std::vector<Rgb> yarn_colors(const FabricScene& fabric, const Pattern& pattern) {
+  if (fabric.palette) return *fabric.palette;
+  std::vector<Rgb> out;
+  for (const auto& color : pattern.palette) {
+    Rgb linear;
+    for (size_t k = 0; k < 3; ++k) linear[k] = srgb_to_linear(color[k] / 255.0);
+    out.push_back(linear);
+  }
+  return out;
 }
 
 uint32_t pack_ply_color(const Rgb& color) {
@@ -155,8 +170,8 @@ Rgb heathered(const Rgb& color, double hash, double spread) {
 }
 
 std::vector<uint32_t> bake_ply_colors(const Fabric& fabric, const PlyAppearance& yarn, const ColorImage& image,
-                                      const Image& pixels) {
-  const Palette palette(yarn, image, pixels);
+                                      const Image& pixels, const std::vector<Rgb>& yarns) {
+  const Palette palette(yarn, image, pixels, yarns);
   Encoder encoder(yarn);
   const size_t plies = size_t(fabric.plies);
   const double spread = yarn.heather_yarn + yarn.heather_ply;
@@ -177,7 +192,7 @@ std::vector<uint32_t> bake_ply_colors(const Fabric& fabric, const PlyAppearance&
       for (size_t k = 0; k < run.count; ++k) {
         const StrandPlace* place =
             fabric.place.empty() ? nullptr : &fabric.place[run.first_place + (run.one_place ? 0 : k)];
-        std::optional<Rgb> color = palette.at(place, int(p));
+        std::optional<Rgb> color = palette.at(place, int(p), run.color);
         if (!color && spread > 0) color = encoder.own();
         if (color && (k == 0 || color != last))
           word = encoder.word(encoder.tints() ? tinted(*color, heather, spread) : heathered(*color, heather, spread));

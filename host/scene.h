@@ -28,7 +28,7 @@ struct MeshSource {
 
 struct PatternSource {
   std::filesystem::path file;  ///< absolute; empty when built in
-  std::string builtin;         ///< "stockinette"
+  std::string builtin;         ///< one of bundled_tiles()
   PatternHints hints;
 };
 
@@ -106,6 +106,7 @@ struct FabricScene {
   PatternSource pattern;
   int material = 0;  ///< index into Scene::materials, a ply material
   ColorImage color_image;
+  std::optional<std::vector<Rgb>> palette;  ///< of the tile's yarns, in place of the tile's own; empty: the material's
 };
 
 /// A prop: mesh, sphere or an endless-looking ground quad.

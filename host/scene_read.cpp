@@ -200,6 +200,10 @@ FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index) {
   fabric.transform = transform_of(node["transform"]);
   fabric.pattern = pattern_of(node["pattern"]);
   fabric.material = find_material(scene, node, path, true);
+  if (const JsonNode* palette = node.find("palette")) {
+    fabric.palette.emplace();
+    for (const JsonNode& color : palette->items) fabric.palette->push_back(color_of(color));
+  }
   if (const JsonNode* image = node.find("color_image"))
     fabric.color_image = {(*image)["file"].text, (*image)["map"].text == "stitches", pair_of((*image)["origin"]),
                           pair_of((*image)["size"]), (*image)["repeat"].boolean};

@@ -1,5 +1,6 @@
 #include "host/scene_schema.h"
 
+#include "host/bundled_tiles.h"
 #include "host/material_schema.h"
 #include "host/scene.h"
 
@@ -106,7 +107,7 @@ Type pattern() {
       {"stitches", vector(2, {1, 10000}, Unit::none, true), "wales and courses in the tile"},
       {"unit", number({1e-9, 1e3}), "metres per unit of the file"},
   });
-  const auto built_in = object({{"builtin", word({"stockinette"}), "closed-form tile", "", true}});
+  const auto built_in = object({{"builtin", word(bundled_tiles()), "stockinette in closed form, or a relaxed tile of docs/patterns.md", "", true}});
   return either({{"", file()}, {"file", named}, {"builtin", built_in}});
 }
 
@@ -151,6 +152,8 @@ Type fabric() {
           {"lattice", count(0, 64),
            "cells along a tile's side of the lattice that warps the plies; 0 = the base mesh itself (1 if procedural)",
            "0"},
+          {"palette", list(color()),
+           "colours of the tile's yarns, in turn; absent = the tile's own, [] = the material's"},
           {"color_image", color_image_type(),
            "one colour per stitch from an image; goes before the material's colours"},
       },

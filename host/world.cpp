@@ -78,19 +78,20 @@ class Builder {
       const bool fibres = made.report.fibres > 0;
       world_.fabric_fibre_material.push_back(fibres ? uint32_t(world_.fibre_materials.size()) : W_NONE);
       if (fibres) world_.fibre_materials.push_back(fibre_material(yarn));
-      color_plies(made, yarn, fabric.color_image);
+      color_plies(made, yarn, fabric.color_image, knitted[f].yarn_colors);
     }
   }
 
-  void color_plies(Fabric& fabric, const PlyAppearance& yarn, const ColorImage& image) {
+  void color_plies(Fabric& fabric, const PlyAppearance& yarn, const ColorImage& image,
+                   const std::vector<Rgb>& yarns) {
     const size_t before = vertices_;
     vertices_ += fabric.anchors.size();
-    if (!colors_vary(yarn, image)) {
+    if (!colors_vary(yarn, image, yarns)) {
       if (!world_.ply_colors.empty()) world_.ply_colors.resize(vertices_, 0);
       return;
     }
     const std::vector<uint32_t> words =
-        bake_ply_colors(fabric, yarn, image, image.file.empty() ? Image{} : loaders_.image(image.file));
+        bake_ply_colors(fabric, yarn, image, image.file.empty() ? Image{} : loaders_.image(image.file), yarns);
     world_.ply_colors.resize(before, 0);  // fabrics before it keep their materials' colours
     world_.ply_colors.insert(world_.ply_colors.end(), words.begin(), words.end());
     world_.colored_fabrics.push_back(fabric.name);

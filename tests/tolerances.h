@@ -57,6 +57,10 @@ constexpr double kFactorOfGoal = 1.5;   // the promise: actual error over the on
 constexpr double kBiasShare = 0.005;    // four standard errors of the mean of 24 pictures of 576 pixels, and the reference's
 constexpr double kVarianceShare = 0.1;  // variance channel against the spread of 24 pictures of 576 pixels
 
+// Yarn radii by which a bundled tile may differ from the one that its chart gives on another machine: forces end at a
+// tolerance, not at 0.
+constexpr double kRelaxedAgain = 0.01;
+
 // Seconds of processor time that a reader may take for any file of up to 64 KiB: what a user does not notice.
 constexpr double kReaderSeconds = 1;
 

@@ -16,7 +16,7 @@
 namespace wale {
 namespace {
 
-constexpr double kRow = 0.62, kHalf = 0.13, kDepth = 0.16;  // stitch widths
+constexpr double kRow = 0.62, kHalf = 0.13, kDepth = 0.16, kLane = 0.3;  // stitch widths
 
 // Heights of the rows of a tile and of as many as its loops reach into the next ones: where loops cross on their way up
 // there is more of it, or their legs would lie side by side as one.
@@ -45,12 +45,12 @@ class RowHeights {
 
 class CourseCurve {
  public:
-  CourseCurve(const Knit& knit, const RowHeights& heights, int row) : heights_(heights) {
-    const Course& course = knit.courses[size_t(row)];
+  CourseCurve(const Knit& knit, const RowHeights& heights, const Course& course) : heights_(heights) {
+    const double lane = kLane * (course.lane - 0.5 * (course.lanes - 1));
     for (size_t wale = 0; wale < course.places.size(); ++wale) {
       const auto& place = course.places[wale];
       if (place.loop < 0)
-        add(double(wale) + 0.5, heights_.at(row), (place.float_front ? 2.2 : -2.2) * kDepth);
+        add(double(wale) + 0.5, heights_.at(course.row) + lane, (place.float_front ? 2.2 : -2.2) * kDepth);
       else
         loop(knit.loops[size_t(place.loop)]);
     }
@@ -70,9 +70,9 @@ class CourseCurve {
         half.emplace_back(x + side * 0.2, y - 0.2 * kHalf, 0);
         half.emplace_back(x + side * 0.15, y + kHalf, front * kDepth);
       } else {
-        // Nothing to come up through; behind what is held there.
-        half.emplace_back(x + side * 0.38, y - 0.5 * kHalf, -1.8 * kDepth);
-        half.emplace_back(x + side * 0.36, y + kHalf, -1.4 * kDepth);
+        // Nothing to come up through; behind what is held there, or in front.
+        half.emplace_back(x + side * 0.38, y - 0.5 * kHalf, -1.8 * front * kDepth);
+        half.emplace_back(x + side * 0.36, y + kHalf, -1.4 * front * kDepth);
       }
       const double behind = 2 * kDepth * l.place, before = 2 * kDepth * (l.beside - 1 - l.place);
       const double lean = side * 0.04 * l.place;
@@ -140,11 +140,11 @@ PeriodicYarns loop_curves(const Knit& knit, const LoopSizes& sizes) {
   std::vector<std::vector<dvec3>> lines;
   double drawn = 0, total = 0;
   std::vector<double> lengths;
-  for (int row = 0; row < knit.rows; ++row) {
-    lines.push_back(fine(CourseCurve(knit, heights, row).points, knit.wales));
+  for (const Course& course : knit.courses) {
+    lines.push_back(fine(CourseCurve(knit, heights, course).points, knit.wales));
     drawn += length_of(lines.back());
     double loops = 0;
-    for (const auto& place : knit.courses[size_t(row)].places)
+    for (const auto& place : course.places)
       loops += place.loop < 0 ? kFloat : 1 + kCrossing * std::abs(crossed(knit.loops[size_t(place.loop)]));
     lengths.push_back(loops * sizes.loop_length * diameter);
     total += lengths.back();
@@ -153,7 +153,7 @@ PeriodicYarns loop_curves(const Knit& knit, const LoopSizes& sizes) {
   PeriodicYarns out;
   out.radius = sizes.yarn_radius;
   out.period = scale * dvec2(knit.wales, heights.tile());
-  for (size_t row = 0; row < lines.size(); ++row) {
+  for (size_t row = 0; row < lines.size(); ++row) {  // courses
     PeriodicYarn yarn;
     yarn.first = uint32_t(out.points.size());
     yarn.length = lengths[row];

@@ -16,8 +16,11 @@ struct Loop {
   int crossing = 0;           ///< cable: on its way up it passes in front (1) or behind (-1) of others
 };
 
-/// What a row's yarn does at one wale of it.
+/// What one yarn of a row does at each of its wales.
 struct Course {
+  int row = 0, yarn = 0;    ///< yarn: of the chart
+  int lane = 0, lanes = 1;  ///< of `lanes` yarns of the row the lane-th, which float past each other in this order
+
   struct Place {
     int loop = -1;             ///< index into Knit::loops; -1: it floats past
     bool float_front = false;  ///< ... in front
@@ -25,15 +28,15 @@ struct Course {
   std::vector<Place> places;  ///< from left to right
 };
 
-/// A tile as loops: one yarn per row.
+/// A tile as loops: one course per row and yarn, rows in order.
 struct Knit {
   int wales = 0, rows = 0;
   std::vector<Loop> loops;
   std::vector<Course> courses;
 };
 
-/// Follows every loop from the row that makes it to the one that takes it. Throws a user error naming row and column
-/// when a loop is slipped all the way through the tile and never taken.
-Knit knit_chart(const StitchChart& chart, const std::filesystem::path& file);
+/// Follows every loop from the row that makes it to the one that takes it. Throws a user error naming row and wale
+/// when a loop is slipped all the way through the tile and never taken. The chart has passed check_chart().
+Knit knit_chart(const StitchChart& chart);
 
 }  // namespace wale

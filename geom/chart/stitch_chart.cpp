@@ -1,134 +1,13 @@
 #include "geom/chart/stitch_chart.h"
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
-#include <optional>
 
+#include "geom/chart/chart_row.h"
 #include "geom/error.h"
+#include "geom/text_lines.h"
 
 namespace wale {
 namespace {
-
-std::optional<Stitch> symbol(char c) {
-  switch (c) {
-    case 'k':
-      return Stitch::knit;
-    case 'p':
-      return Stitch::purl;
-    case 's':
-      return Stitch::slip;
-    case 'S':
-      return Stitch::slip_front;
-    case 't':
-      return Stitch::tuck;
-    case 'o':
-      return Stitch::yarn_over;
-    case '/':
-      return Stitch::k2tog;
-    case '\\':
-      return Stitch::ssk;
-    default:
-      return std::nullopt;
-  }
-}
-
-// Reads a number at the start of `text` and takes it off.
-std::optional<int> take_number(std::string_view& text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || value < 0 || value > 1000) return std::nullopt;
-  text.remove_prefix(size_t(end - text.data()));
-  return value;
-}
-
-// c4f, c2/1b; null where the word is no cable.
-std::optional<ChartCell> cable(std::string_view word) {
-  if (word.empty() || (word[0] != 'c' && word[0] != 'C')) return std::nullopt;
-  word.remove_prefix(1);
-  const auto first = take_number(word);
-  if (!first) return std::nullopt;
-  std::optional<int> second;
-  if (!word.empty() && word[0] == '/') {
-    word.remove_prefix(1);
-    second = take_number(word);
-    if (!second) return std::nullopt;
-  } else if (*first % 2) {
-    return std::nullopt;
-  }
-  if (word.size() != 1) return std::nullopt;
-  const char side = char(std::tolower(static_cast<unsigned char>(word[0])));
-  if (side != 'f' && side != 'b') return std::nullopt;
-  ChartCell cell;
-  cell.stitch = Stitch::cable;
-  const int front = second ? *first : *first / 2, behind = second ? *second : *first / 2;
-  if (front < 1 || behind < 1) return std::nullopt;
-  cell.left_in_front = side == 'f';
-  cell.left = cell.left_in_front ? front : behind;
-  cell.right = cell.left_in_front ? behind : front;
-  return cell;
-}
-
-class Reader {
- public:
-  Reader(const std::filesystem::path& file, int line) : file_(file), line_(line) {}
-
-  std::vector<ChartCell> row(std::string_view text) {
-    size_t at = 0;
-    while (at < text.size()) {
-      if (std::isspace(static_cast<unsigned char>(text[at]))) {
-        ++at;
-        continue;
-      }
-      size_t end = at;
-      while (end < text.size() && !std::isspace(static_cast<unsigned char>(text[end]))) ++end;
-      word(text.substr(at, end - at), int(at) + 1);
-      at = end;
-    }
-    return std::move(cells_);
-  }
-
- private:
-  void add(ChartCell cell, int column) {
-    cell.column = column;
-    if (cells_.size() >= 4096) user_error("{}:{}:{}: a row of more than 4096 stitches", file_.string(), line_, column);
-    cells_.push_back(cell);
-  }
-
-  void word(std::string_view text, int column) {
-    if (text == "k2tog" || text == "ssk" || text == "yo") {
-      add({text == "k2tog" ? Stitch::k2tog : text == "ssk" ? Stitch::ssk : Stitch::yarn_over}, column);
-      return;
-    }
-    if (const auto found = cable(text)) {
-      add(*found, column);
-      return;
-    }
-    for (size_t i = 0; i < text.size();) {
-      const auto stitch = symbol(text[i]);
-      if (!stitch)
-        user_error(
-            "{}:{}:{}: \"{}\" is no stitch; valid: k p s S t o / \\, k2tog, ssk, yo, cables such as c4f or c2/1b",
-            file_.string(), line_, column + int(i), one_line(std::string(text.substr(i))));
-      const int where = column + int(i);
-      std::string_view rest = text.substr(++i);
-      int count = 1;
-      if (!rest.empty() && std::isdigit(static_cast<unsigned char>(rest[0]))) {
-        const size_t before = rest.size();
-        const auto number = take_number(rest);
-        if (!number || *number < 1)
-          user_error("{}:{}:{}: a stitch is repeated 1 to 1000 times", file_.string(), line_, where + 1);
-        count = *number;
-        i += before - rest.size();
-      }
-      for (int k = 0; k < count; ++k) add({*stitch}, where);
-    }
-  }
-
-  const std::filesystem::path& file_;
-  int line_;
-  std::vector<ChartCell> cells_;
-};
 
 int sum(const std::vector<ChartCell>& row, int (ChartCell::*count)() const) {
   int total = 0;
@@ -136,62 +15,160 @@ int sum(const std::vector<ChartCell>& row, int (ChartCell::*count)() const) {
   return total;
 }
 
+std::string_view trimmed(std::string_view text) {
+  const char* blanks = " \t\r\f\v";
+  const size_t first = text.find_first_not_of(blanks);
+  return first == std::string_view::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+// "a: #1d3f72", "a:" of a line "yarn a: #1d3f72  # navy".
+ChartYarn yarn_line(std::string_view text, const std::string& where, const std::vector<ChartYarn>& yarns) {
+  text = trimmed(text);
+  const size_t colon = text.find(':');
+  const std::string_view letter = trimmed(text.substr(0, colon));
+  if (letter.size() != 1 || letter[0] < 'a' || letter[0] > 'z')
+    user_error("{}:1: a yarn is named by a letter, for example: yarn a: #1d3f72", where);
+  for (const ChartYarn& other : yarns)
+    if (other.letter == letter[0]) user_error("{}:1: yarn {} is there already", where, letter);
+  ChartYarn yarn{letter[0], {}};
+  const std::string_view rest = colon == std::string_view::npos ? "" : trimmed(text.substr(colon + 1));
+  const std::string_view word = rest.substr(0, rest.find_first_of(" \t"));
+  if (!word.empty()) {
+    yarn.color = parse_color(word);
+    if (!yarn.color)
+      user_error("{}:1: \"{}\" is no colour; valid: #rrggbb (sRGB), or nothing", where, one_line(std::string(word)));
+  }
+  return yarn;
+}
+
+const char* name_of(const ChartCell& cell) {
+  return cell.stitch == Stitch::cable ? "this cable" : cell.takes() == 2 ? "this decrease" : "this stitch";
+}
+
+std::string cell_text(const ChartCell& cell) {
+  switch (cell.stitch) {
+    case Stitch::knit:
+      return "k";
+    case Stitch::purl:
+      return "p";
+    case Stitch::slip:
+      return "s";
+    case Stitch::slip_front:
+      return "S";
+    case Stitch::tuck:
+      return "t";
+    case Stitch::tuck_front:
+      return "T";
+    case Stitch::yarn_over:
+      return "o";
+    case Stitch::k2tog:
+      return "/";
+    case Stitch::ssk:
+      return "\\";
+    case Stitch::cable:
+      break;
+  }
+  const int front = cell.left_in_front ? cell.left : cell.right, behind = cell.left_in_front ? cell.right : cell.left;
+  return fmt::format(" c{}/{}{} ", front, behind, cell.left_in_front ? 'f' : 'b');
+}
+
 }  // namespace
 
-int StitchChart::wales() const { return rows.empty() ? 0 : sum(rows.front(), &ChartCell::makes); }
+int ChartRow::takes() const { return sum(cells, &ChartCell::takes); }
+int ChartRow::makes() const { return sum(cells, &ChartCell::makes); }
+int StitchChart::wales() const { return rows.empty() ? 0 : rows.front().makes(); }
 
-StitchChart parse_chart(std::string_view text, const std::filesystem::path& file) {
+StitchChart parse_chart_text(std::string_view text, const std::filesystem::path& file) {
   StitchChart chart;
-  chart.name = file.stem().string();
   int line = 0;
+  bool named = false;  // yarns
   while (!text.empty()) {
-    ++line;
+    const std::string where = fmt::format("{}:{}", file.string(), ++line);
     const size_t end = text.find('\n');
     std::string_view row = text.substr(0, end);
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    row = row.substr(0, row.find('#'));
-    if (row.starts_with("name:")) {
-      row.remove_prefix(5);
-      while (!row.empty() && std::isspace(static_cast<unsigned char>(row.front()))) row.remove_prefix(1);
-      while (!row.empty() && std::isspace(static_cast<unsigned char>(row.back()))) row.remove_suffix(1);
-      chart.name = std::string(row);
+    if (row.starts_with("yarn ")) {
+      if (!chart.rows.empty()) user_error("{}:1: yarns are named before the first row", where);
+      chart.yarns.push_back(yarn_line(row.substr(5), where, chart.yarns));
+      named = true;
       continue;
     }
-    auto cells = Reader(file, line).row(row);
-    if (cells.empty()) continue;
-    chart.rows.push_back(std::move(cells));
-    chart.line.push_back(line);
-    if (chart.rows.size() > 1000) user_error("{}:{}: a chart of more than 1000 rows", file.string(), line);
+    row = row.substr(0, row.find('#'));
+    if (row.starts_with("name:")) {
+      chart.name = std::string(trimmed(row.substr(5)));
+      continue;
+    }
+    if (trimmed(row).empty()) continue;
+    if (chart.yarns.empty()) chart.yarns.push_back({});
+    chart.rows.push_back(parse_chart_row(row, where, 1, chart.yarns, named));
+    if (chart.rows.size() > size_t(kMostStitches)) user_error("{}:1: more than {} rows", where, kMostStitches);
   }
-  if (chart.rows.empty()) user_error("{}: no row of stitches", file.string());
   std::reverse(chart.rows.begin(), chart.rows.end());
-  std::reverse(chart.line.begin(), chart.line.end());
+  return chart;
+}
+
+StitchChart parse_chart(std::string_view bytes, const std::filesystem::path& file) {
+  const auto suffix = file.extension();
+  StitchChart chart = suffix == ".json"                        ? parse_chart_json(bytes, file)
+                      : suffix == ".knitout" || suffix == ".k" ? parse_knitout(bytes, file)
+                                                               : parse_chart_text(bytes, file);
+  if (chart.name.empty()) chart.name = file.stem().string();
+  check_chart(chart, file);
+  return chart;
+}
+
+StitchChart read_chart(const std::filesystem::path& file) { return parse_chart(read_bytes(file), file); }
+
+void check_chart(const StitchChart& chart, const std::filesystem::path& file) {
+  if (chart.rows.empty()) user_error("{}: no row of stitches", file.string());
   // The first row knitted follows the last one, in the next tile.
   for (size_t r = 0; r < chart.rows.size(); ++r) {
-    const size_t below = (r + chart.rows.size() - 1) % chart.rows.size();
-    int left = sum(chart.rows[below], &ChartCell::makes);
-    const int there = left;
-    for (const ChartCell& cell : chart.rows[r]) {
+    const ChartRow &row = chart.rows[r], &below = chart.rows[(r + chart.rows.size() - 1) % chart.rows.size()];
+    if (row.cells.empty()) user_error("{}:1: a row without stitches", row.where);
+    const int there = below.makes();
+    int left = there;
+    for (const ChartCell& cell : row.cells) {
       if (cell.takes() > left)
-        user_error("{}:{}:{}: {} takes {} loops, but of the {} of the row below (line {}) {} are left", file.string(),
-                   chart.line[r], cell.column,
-                   cell.stitch == Stitch::cable ? "this cable"
-                   : cell.takes() == 2          ? "this decrease"
-                                                : "this stitch",
-                   cell.takes(), there, chart.line[below], left);
+        user_error("{}:{}: {} takes {} loops, but of the {} of the row below ({}) {} are left", row.where, cell.column,
+                   name_of(cell), cell.takes(), there, below.where, left);
       left -= cell.takes();
     }
     if (left > 0)
-      user_error("{}:{}: this row takes {} of the {} loops of the row below (line {})", file.string(), chart.line[r],
-                 there - left, there, chart.line[below]);
+      user_error("{}:{}: this row takes {} of the {} loops of the row below ({})", row.where, row.cells.back().column,
+                 there - left, there, below.where);
+    if (std::all_of(row.cells.begin(), row.cells.end(), [](const ChartCell& c) { return c.slips(); }))
+      user_error("{}:{}: every stitch of this row is slipped, and its yarn is held by none", row.where,
+                 row.cells.front().column);
   }
-  for (size_t r = 1; r < chart.rows.size(); ++r)
-    if (sum(chart.rows[r], &ChartCell::makes) != chart.wales())
+  for (const ChartRow& row : chart.rows)
+    if (row.makes() != chart.wales())
       user_error(
-          "{}:{}: this row ends with {} loops, the row of line {} with {}; every yarn over needs a decrease in "
+          "{}:{}: this row ends with {} loops, the one knitted first ({}) with {}; every yarn over needs a decrease in "
           "the same row",
-          file.string(), chart.line[r], sum(chart.rows[r], &ChartCell::makes), chart.line[0], chart.wales());
-  return chart;
+          row.where, row.cells.back().column, row.makes(), chart.rows.front().where, chart.wales());
+  if (size_t(chart.wales()) * chart.rows.size() > size_t(kMostStitches))
+    user_error("{}: {} x {} stitches; a tile has at most {}", file.string(), chart.wales(), chart.rows.size(),
+               kMostStitches);
+}
+
+std::vector<std::string> chart_lines(const StitchChart& chart) {
+  std::vector<std::string> lines;
+  for (const ChartYarn& yarn : chart.yarns)
+    if (chart.yarns.size() > 1 || yarn.color)
+      lines.push_back(yarn.color ? fmt::format("yarn {}: #{:02x}{:02x}{:02x}", yarn.letter, (*yarn.color)[0],
+                                               (*yarn.color)[1], (*yarn.color)[2])
+                                 : fmt::format("yarn {}:", yarn.letter));
+  for (auto row = chart.rows.rbegin(); row != chart.rows.rend(); ++row) {
+    std::string line;
+    for (const ChartCell& cell : row->cells) line += cell_text(cell);
+    line = std::string(trimmed(line));
+    if (chart.yarns.size() > 1) {
+      line += " | ";
+      for (const int yarn : row->yarn) line += chart.yarns[size_t(yarn)].letter;
+    }
+    lines.push_back(line);
+  }
+  return lines;
 }
 
 }  // namespace wale

@@ -11,9 +11,10 @@ namespace wale {
 struct RelaxSettings {
   double stretch_stiffness = 3000;  ///< B / D^2 per unit of strain
   double closest = 0.95;            ///< least distance of centrelines, D; contact forces reach up to 1 D
-  double contact_stiffness = 100;   ///< B / D^3
+  double contact_stiffness = 2000;  ///< B / D^5: energy of a place is this times its two lengths
+  int contact_samples = 4;          ///< of a segment, for the integral of contact along it
   double neighbours = 2;            ///< D of arc below which points of one yarn do not touch
-  dvec2 tension{0, 0};              ///< force on the tile along x and y per period across, B / D^3
+  dvec2 tension{0, 0};              ///< force on the whole sides of the tile, along x and along y, B / D^2
   bool free_period_x = true, free_period_y = true;
   double force_tolerance = 2e-3;  ///< largest force on a point and on the period's sides, B / D^2
   int max_steps = 3000;

@@ -62,6 +62,31 @@ def patterns():
     write("tile_json", "ring", json.dumps(tile))
 
 
+def charts():
+    write("chart", "rib", "name: rib\nk2 p2\n")
+    write("chart", "lace", "# holes\nk6\nk3 yo k2tog k\nk6\nssk o k4\n")
+    write("chart", "cable", "p2k4p2\np2 c2/2f p2\np k c2/1b k2 p\n")
+    write("chart", "colors", "yarn a: #1d3f72\nyarn b:\nk4 | ab2a\nk s S k | b\nk4 | a\nk t T k | b\n")
+    write("chart_json", "rows", json.dumps({"wale_chart": 1, "name": "two", "rows": ["k2 p2", ["k", "k", "p2"]]}))
+    write("chart_json", "yarns", json.dumps({"wale_chart": 1, "yarns": {"a": "#102030", "b": None}, "rows": [
+        {"stitches": "k4", "yarns": "abab"}, {"stitches": ["k", "k2tog", "yo", "k"], "yarns": ["a4"]}, "k4 | b"]}))
+    head = ";!knitout-2\n;;Carriers: 1 2\ninhook 1\n"
+
+    def swatch(rows, needles, work, before=lambda row: ""):
+        text = head
+        for row in range(rows):
+            text += before(row)
+            order = range(1, needles + 1) if row % 2 == 0 else range(needles, 0, -1)
+            text += "".join(work(row, n, "+-"[row % 2]) for n in order)
+        return text
+
+    plain = lambda row, n, way: f"knit {way} f{n} 1\n"
+    write("knitout", "jersey", swatch(8, 8, plain) + "outhook 1\n")
+    write("knitout", "beds", swatch(9, 8, lambda row, n, way: f"{'tuck' if row % 2 and n % 2 else 'knit'} {way} {'fb'[n % 2]}{n} 1\n"))
+    write("knitout", "lace", swatch(10, 12, plain, lambda row: "" if row % 2 else "".join(
+        f"xfer f{n} b{n}\nrack 1\nxfer b{n} f{n + 1}\nrack 0\n" for n in range(3, 12, 3))))
+
+
 def meshes():
     write("obj", "quad", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 .5\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0\nf 1/1 2/2 3/3 4/4\n")
     write("obj", "relative", "# from the end\no x\nv 0 0 0\nv 1 0 0 1\nv +1 1e0 0\nvn 0 0 1\nf -3//1 -2//1 \\\n -1//1\r\n")
@@ -138,6 +163,7 @@ def images():
 
 
 patterns()
+charts()
 meshes()
 scenes()
 images()

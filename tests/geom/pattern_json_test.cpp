@@ -56,6 +56,27 @@ TEST(JsonTile, RingThatRepeatsItsFirstPoint) {
   EXPECT_EQ(read_pattern(folder / "t.json").curves[1].points.size(), points);
 }
 
+TEST(JsonTile, ColoursAndOriginComeBack) {
+  ScratchFolder folder;
+  Pattern tile = two_row_tile();
+  tile.palette = {{1, 2, 255}, {16, 0, 9}};
+  tile.curves[1].yarn = 1;
+  tile.chart = {"kp \"\\", "pk"};
+  tile.settings = {{"loop_length", 0.0132}, {"step", 0.6}};
+  write_pattern_json(tile, folder / "t.json");
+  const Pattern back = read_pattern(folder / "t.json");
+  EXPECT_EQ(back.palette, tile.palette);
+  EXPECT_EQ(back.curves[1].yarn, 1);
+  EXPECT_EQ(back.chart, tile.chart);
+  EXPECT_EQ(back.settings, tile.settings);
+}
+TEST(JsonTile, BadColours) {
+  const std::string kind = "\"kind\": \"bspline\"";
+  expect_refused(kind, kind + ", \"palette\": [\"red\"]", {"palette[0]", "#rrggbb"});
+  expect_refused("\"closed\"", "\"yarn\": -1, \"closed\"", {"curves[0].yarn", "0 to 255"});
+  expect_refused("\"kind\": \"bspline\",\n \"curves\": [{", "\"palette\": [\"#000000\"], \"curves\": [{\"yarn\": 1, ",
+                 {"palette", "curve 0 is of yarn 1"});
+}
 TEST(JsonTile, UnwritableFolder) {
   expect_user_error([] { write_pattern_json(two_row_tile(), "/nowhere/t.json"); }, {"/nowhere/t.json", "written"});
 }

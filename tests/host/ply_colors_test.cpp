@@ -75,6 +75,51 @@ TEST(PlyColors, PliesTakeTurns) {
       EXPECT_EQ(words[run.first_vertex + k], pack_ply_color((k / run.count) % 2 == 0 ? Rgb{1, 0, 0} : Rgb{0, 0, 1}));
 }
 
+TEST(PlyColors, YarnsOfTheTileTakeThePalette) {
+  Fabric fabric = knit(2, false);
+  ASSERT_GT(fabric.runs.size(), 2u);
+  for (size_t r = 0; r < fabric.runs.size(); ++r) fabric.runs[r].color = uint32_t(r % 2);
+  PlyAppearance yarn;
+  const std::vector<Rgb> yarns = {{1, 0, 0}, {0, 0, 1}};
+  const auto words = bake_ply_colors(fabric, yarn, {}, {}, yarns);
+  for (const PlyRun& run : fabric.runs)
+    for (uint32_t k = 0; k < 2 * run.count; ++k)
+      EXPECT_EQ(words[run.first_vertex + k], pack_ply_color(yarns[run.color]));
+  yarn.plies = {{0, 1, 0}};
+  EXPECT_EQ(bake_ply_colors(fabric, yarn, {}, {}, yarns)[0], pack_ply_color({0, 1, 0})) << "the material's plies go first";
+}
+
+TEST(PlyColors, ScenesReplaceThePaletteOfTheTile) {
+  Pattern tile;
+  tile.palette = {{0, 0, 0}, {255, 255, 255}};
+  FabricScene fabric;
+  EXPECT_EQ(yarn_colors(fabric, tile), (std::vector<Rgb>{{0, 0, 0}, {1, 1, 1}}));
+  fabric.palette = {{0.5, 0.25, 0}};
+  EXPECT_EQ(yarn_colors(fabric, tile), (std::vector<Rgb>{{0.5, 0.25, 0}}));
+  fabric.palette = std::vector<Rgb>{};
+  EXPECT_TRUE(yarn_colors(fabric, tile).empty());
+}
+
+// Each run takes the colour of the tile's yarn that it came from.
+TEST(PlyColors, RunsKnowTheirYarnInTheTile) {
+  Pattern tile = stockinette_pattern();
+  PatternCurve second = tile.curves[0];
+  second.yarn = 1;
+  for (dvec3& p : second.points) p.y += tile.period.y;
+  tile.period.y *= 2;
+  tile.curves.push_back(second);
+  FabricSpec spec;
+  spec.scale.repeats = {6, 3};
+  const Fabric fabric = knit_fabric(make_swatch(0.012, 0.007, 4, 4), tile, spec);
+  size_t count[2] = {0, 0};
+  for (const PlyRun& run : fabric.runs) {
+    ASSERT_LT(run.color, 2u);
+    ++count[run.color];
+  }
+  EXPECT_GE(count[0], 3u);
+  EXPECT_GE(count[1], 3u);
+}
+
 TEST(PlyColors, StripesShareTheStrandByTheirLengths) {
   PlyAppearance yarn;
   yarn.stripes = {{{1, 1, 1}, 0.010}, {{0, 0, 0}, 0.030}};

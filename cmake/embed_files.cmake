@@ -1,5 +1,5 @@
-# Writes one C++ file that holds every kernel source by its path below kernels/.
-set(text "#include \"host/kernel_sources.h\"\n\nnamespace wale {\nconst std::map<std::string, std::string>& embedded_kernels() {\n  static const std::map<std::string, std::string> sources = {\n")
+# Writes one C++ file whose function FUNCTION, declared in HEADER, gives the content of FILES by their paths below ROOT.
+set(text "#include \"${HEADER}\"\n\nnamespace wale {\nconst std::map<std::string, std::string>& ${FUNCTION}() {\n  static const std::map<std::string, std::string> sources = {\n")
 foreach(file IN LISTS FILES)
   file(RELATIVE_PATH name ${ROOT} ${file})
   file(READ ${file} content HEX)

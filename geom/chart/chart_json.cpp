@@ -1,0 +1,84 @@
+// {"wale_chart": 1, "name": "...", "yarns": {"a": "#rrggbb", "b": null}, "rows": [row, ...]}, the last row knitted
+// first. A row is a text as in the text language, a list of its words, or {"stitches": text or list, "yarns": text or
+// list of letters}.
+#include "geom/chart/chart_row.h"
+#include "geom/error.h"
+#include "geom/json_value.h"
+
+namespace wale {
+namespace {
+
+// Words with blanks between; each one is looked at by itself, so that a message names its place in the list.
+std::string words_of(const JsonValue& list, const std::string& where, const char* what) {
+  std::string text;
+  size_t number = 0;
+  for (const JsonValue& item : list.items()) {
+    const std::string word = item.text();
+    if (word.empty() || word.find_first_of(" \t\r\n|") != std::string::npos)
+      user_error("{}:{}: \"{}\" is not one {}", where, number + 1, one_line(word), what);
+    text += word + " ";
+    ++number;
+  }
+  return text;
+}
+
+ChartRow row_of(const JsonValue& value, const std::string& where, std::vector<ChartYarn>& yarns, bool closed) {
+  if (value.is_text()) return parse_chart_row(value.text(), where, 1, yarns, closed);
+  const bool named = !value.is_list();
+  if (named) value.only({"stitches", "yarns"});
+  const JsonValue stitches = named ? value["stitches"] : value;
+  std::vector<int> word_of;  // of each symbol
+  std::string text;
+  if (stitches.is_list()) {
+    int number = 0;
+    for (const JsonValue& item : stitches.items()) {
+      ++number;
+      std::vector<ChartYarn> none{{}};
+      const ChartRow alone = parse_chart_row(item.text(), fmt::format("{}, stitch {}", where, number), 1, none, true);
+      word_of.insert(word_of.end(), alone.cells.size(), number);
+    }
+    text = words_of(stitches, where, "word of stitches");
+  } else {
+    text = stitches.text();
+    if (text.find('|') != std::string::npos) user_error("{}: yarns stand under \"yarns\" here", where);
+  }
+  if (named && value.has("yarns")) {
+    const JsonValue letters = value["yarns"];
+    text += "|" + (letters.is_list() ? words_of(letters, where + ", yarn", "letter of a yarn") : letters.text());
+  }
+  ChartRow row = parse_chart_row(text, where, 1, yarns, closed);
+  for (size_t i = 0; i < word_of.size() && i < row.cells.size(); ++i) row.cells[i].column = word_of[i];
+  return row;
+}
+
+}  // namespace
+
+StitchChart parse_chart_json(std::string_view text, const std::filesystem::path& path) {
+  const std::string file = path.string();
+  const nlohmann::json json = parse_json(text, file);
+  const JsonValue root(file, "", json);
+  root.only({"wale_chart", "name", "yarns", "rows"});
+  if (root["wale_chart"].whole() != 1) root["wale_chart"].complain("only version 1 is known");
+  StitchChart chart;
+  if (root.has("name")) chart.name = one_line(root["name"].text());
+  if (root.has("yarns"))
+    for (const std::string& key : root["yarns"].keys()) {
+      const JsonValue color = root["yarns"][key.c_str()];
+      if (key.size() != 1 || key[0] < 'a' || key[0] > 'z') color.complain("a yarn is named by a letter, a to z");
+      ChartYarn yarn{key[0], {}};
+      if (!color.is_null()) {
+        yarn.color = parse_color(color.text());
+        if (!yarn.color) color.complain("no colour; valid: \"#rrggbb\" (sRGB), or null");
+      }
+      chart.yarns.push_back(yarn);
+    }
+  const bool closed = !chart.yarns.empty();
+  if (!closed) chart.yarns.push_back({});
+  const std::vector<JsonValue> rows = root["rows"].items();
+  if (rows.size() > size_t(kMostStitches)) root["rows"].complain(fmt::format("more than {} rows", kMostStitches));
+  for (size_t r = rows.size(); r-- > 0;)
+    chart.rows.push_back(row_of(rows[r], fmt::format("{}: rows[{}]", file, r), chart.yarns, closed));
+  return chart;
+}
+
+}  // namespace wale

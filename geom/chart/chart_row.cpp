@@ -1,0 +1,199 @@
+#include "geom/chart/chart_row.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+
+#include "geom/error.h"
+
+namespace wale {
+namespace {
+
+bool is_blank(char c) { return std::isspace(static_cast<unsigned char>(c)); }
+bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)); }
+
+std::optional<Stitch> symbol(char c) {
+  switch (c) {
+    case 'k':
+      return Stitch::knit;
+    case 'p':
+      return Stitch::purl;
+    case 's':
+      return Stitch::slip;
+    case 'S':
+      return Stitch::slip_front;
+    case 't':
+      return Stitch::tuck;
+    case 'T':
+      return Stitch::tuck_front;
+    case 'o':
+      return Stitch::yarn_over;
+    case '/':
+      return Stitch::k2tog;
+    case '\\':
+      return Stitch::ssk;
+    default:
+      return std::nullopt;
+  }
+}
+
+// Reads a number at the start of `text` and takes it off.
+std::optional<int> take_number(std::string_view& text) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || value < 0 || value > 1000) return std::nullopt;
+  text.remove_prefix(size_t(end - text.data()));
+  return value;
+}
+
+// c4f, c2/1b; null where the word is no cable.
+std::optional<ChartCell> cable(std::string_view word) {
+  if (word.empty() || (word[0] != 'c' && word[0] != 'C')) return std::nullopt;
+  word.remove_prefix(1);
+  const auto first = take_number(word);
+  if (!first) return std::nullopt;
+  std::optional<int> second;
+  if (!word.empty() && word[0] == '/') {
+    word.remove_prefix(1);
+    second = take_number(word);
+    if (!second) return std::nullopt;
+  } else if (*first % 2) {
+    return std::nullopt;
+  }
+  if (word.size() != 1) return std::nullopt;
+  const char side = char(std::tolower(static_cast<unsigned char>(word[0])));
+  if (side != 'f' && side != 'b') return std::nullopt;
+  ChartCell cell;
+  cell.stitch = Stitch::cable;
+  const int front = second ? *first : *first / 2, behind = second ? *second : *first / 2;
+  if (front < 1 || behind < 1) return std::nullopt;
+  cell.left_in_front = side == 'f';
+  cell.left = cell.left_in_front ? front : behind;
+  cell.right = cell.left_in_front ? behind : front;
+  return cell;
+}
+
+class Reader {
+ public:
+  Reader(const std::string& where, int column, std::vector<ChartYarn>& yarns, bool closed)
+      : where_(where), first_(column), yarns_(yarns), closed_(closed) {
+    row_.where = where;
+  }
+
+  ChartRow row(std::string_view text) {
+    const size_t bar = text.find('|');
+    const std::string_view stitches = text.substr(0, bar);
+    for (size_t at = 0; at < stitches.size();) {
+      size_t end = at;
+      while (end < stitches.size() && !is_blank(stitches[end])) ++end;
+      if (end > at) word(stitches.substr(at, end - at), first_ + int(at));
+      at = end + 1;
+    }
+    if (bar == std::string_view::npos)
+      row_.yarn.assign(size_t(row_.makes()), 0);
+    else
+      letters(text.substr(bar + 1), first_ + int(bar) + 1);
+    return std::move(row_);
+  }
+
+ private:
+  void add(ChartCell cell, int column) {
+    cell.column = column;
+    row_.cells.push_back(cell);
+    if (row_.cells.size() > size_t(kMostStitches))
+      user_error("{}:{}: a row of more than {} stitches", where_, column, kMostStitches);
+  }
+
+  // The count behind a symbol at text[i - 1]; 1 without one. Moves i past it.
+  int count(std::string_view text, size_t& i, int column) const {
+    if (i >= text.size() || !is_digit(text[i])) return 1;
+    std::string_view rest = text.substr(i);
+    const auto number = take_number(rest);
+    if (!number || *number < 1) user_error("{}:{}: a stitch is repeated 1 to 1000 times", where_, column + int(i));
+    i = text.size() - rest.size();
+    return *number;
+  }
+
+  void word(std::string_view text, int column) {
+    if (text == "k2tog" || text == "ssk" || text == "yo") {
+      add({text == "k2tog" ? Stitch::k2tog : text == "ssk" ? Stitch::ssk : Stitch::yarn_over}, column);
+      return;
+    }
+    if (const auto found = cable(text)) {
+      add(*found, column);
+      return;
+    }
+    for (size_t i = 0; i < text.size();) {
+      const auto stitch = symbol(text[i]);
+      if (!stitch)
+        user_error("{}:{}: \"{}\" is no stitch; valid: k p s S t T o / \\, k2tog, ssk, yo, cables such as c4f or c2/1b",
+                   where_, column + int(i), one_line(std::string(text.substr(i))));
+      const int there = column + int(i);
+      ++i;
+      for (int k = count(text, i, column); k > 0; --k) add({*stitch}, there);
+    }
+  }
+
+  int yarn(char letter, int column) {
+    for (size_t i = 0; i < yarns_.size(); ++i)
+      if (yarns_[i].letter == letter) return int(i);
+    std::string known;
+    for (const ChartYarn& y : yarns_) known += std::string(known.empty() ? "" : ", ") + y.letter;
+    if (letter < 'a' || letter > 'z')
+      user_error("{}:{}: '{}' is no yarn; yarns are letters a to z", where_, column, one_line(std::string(1, letter)));
+    if (closed_) user_error("{}:{}: no yarn is called {}; there are {}", where_, column, letter, known);
+    yarns_.push_back({letter, {}});
+    return int(yarns_.size()) - 1;
+  }
+
+  void letters(std::string_view text, int column) {
+    const int makes = row_.makes();
+    int last = column;
+    for (size_t i = 0; i < text.size();) {
+      if (is_blank(text[i])) {
+        ++i;
+        continue;
+      }
+      last = column + int(i);
+      const int number = yarn(text[i], last);
+      ++i;
+      const int times = count(text, i, column);
+      if (int(row_.yarn.size()) + times > std::max(makes, 1) || int(row_.yarn.size()) + times > kMostStitches)
+        user_error("{}:{}: yarns for more than the {} stitches of the row", where_, last, makes);
+      row_.yarn.insert(row_.yarn.end(), size_t(times), number);
+      if (row_.yarn.size() == 1) single_ = times == 1;
+    }
+    if (row_.yarn.empty()) user_error("{}:{}: no yarn behind '|'; leave it out, or give one letter", where_, column);
+    if (row_.yarn.size() == 1 && single_)
+      row_.yarn.assign(size_t(makes), row_.yarn.front());
+    else if (int(row_.yarn.size()) < makes)
+      user_error("{}:{}: yarn {} ends in mid-air: {} of {} stitches have a yarn", where_, last,
+                 yarns_[size_t(row_.yarn.back())].letter, row_.yarn.size(), makes);
+  }
+
+  const std::string& where_;
+  int first_;
+  std::vector<ChartYarn>& yarns_;
+  bool closed_;
+  bool single_ = false;
+  ChartRow row_;
+};
+
+}  // namespace
+
+ChartRow parse_chart_row(std::string_view text, const std::string& where, int column, std::vector<ChartYarn>& yarns,
+                         bool closed) {
+  return Reader(where, column, yarns, closed).row(text);
+}
+
+std::optional<std::array<uint8_t, 3>> parse_color(std::string_view text) {
+  if (text.size() != 7 || text[0] != '#') return std::nullopt;
+  std::array<uint8_t, 3> out{};
+  for (size_t k = 0; k < 3; ++k) {
+    const char* begin = text.data() + 1 + 2 * k;
+    if (std::from_chars(begin, begin + 2, out[k], 16).ptr != begin + 2) return std::nullopt;
+  }
+  return out;
+}
+
+}  // namespace wale

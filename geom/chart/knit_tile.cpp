@@ -1,0 +1,173 @@
+#include "geom/chart/knit_tile.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geom/chart/loop_curves.h"
+#include "geom/error.h"
+#include "geom/pattern_readers.h"
+
+namespace wale {
+namespace {
+
+// Loop lengths, in yarn diameters: shorter ones jam, longer ones are no cloth.
+constexpr double kShortest = 6, kLongest = 100;
+constexpr double kNanometres = 1e9;  // per metre
+// Of yarns that the chart gives no colour.
+constexpr std::array<std::array<uint8_t, 3>, 4> kColors = {
+    {{29, 63, 114}, {239, 227, 200}, {140, 47, 38}, {74, 107, 66}}};
+
+void require(double value, double least, double most, const char* what, const char* unit, double per_unit) {
+  if (!(value >= least && value <= most))
+    user_error("{} of {:g}{}; valid: {:g} to {:g}{}", what, value * per_unit, unit, least * per_unit, most * per_unit,
+               unit);
+}
+
+void check(const KnitSettings& s) {
+  require(s.yarn_thickness, 1e-5, 0.1, "a yarn thickness", " mm", 1e3);
+  if (s.loop_length != 0)
+    require(s.loop_length / s.yarn_thickness, kShortest, kLongest, "a loop length", " yarn diameters", 1);
+  require(s.step, 0.2, 1.5, "a resolution", " yarn diameters", 1);
+  for (const double t : {s.tension.x, s.tension.y}) require(t, 0, 10, "a tension", "", 1);
+  if (s.period)
+    for (const double p : {s.period->x, s.period->y})
+      require(p / s.yarn_thickness, 0.5, 1e5, "a period", " yarn diameters", 1);
+  for (const auto& gauge : {s.wales, s.courses})
+    if (gauge) require(*gauge * s.yarn_thickness, 1e-3, 2, "a gauge", " stitches per yarn diameter", 1);
+  if (s.period && (s.wales || s.courses)) user_error("a period that is held has its gauge; give one of them");
+  if (s.wales && s.courses) user_error("one loop length gives both wales and courses; ask for one of them");
+  if (s.loop_length != 0 && (s.wales || s.courses)) user_error("the loop length gives the gauge; ask for one of them");
+}
+
+double rounded(double metres) { return std::round(metres * kNanometres) / kNanometres; }
+dvec3 rounded(const dvec3& p) { return {rounded(p.x), rounded(p.y), rounded(p.z)}; }
+
+std::vector<std::array<uint8_t, 3>> palette_of(const StitchChart& chart) {
+  if (chart.yarns.size() == 1 && !chart.yarns[0].color) return {};
+  std::vector<std::array<uint8_t, 3>> palette;
+  for (size_t i = 0; i < chart.yarns.size(); ++i)
+    palette.push_back(chart.yarns[i].color.value_or(kColors[i % kColors.size()]));
+  return palette;
+}
+
+Pattern pattern_of(const StitchChart& chart, const Knit& knit, const PeriodicYarns& yarns) {
+  Pattern pattern;
+  pattern.name = chart.name;
+  pattern.period = {rounded(yarns.period.x), rounded(yarns.period.y)};
+  pattern.yarn_radius = yarns.radius;
+  pattern.stitches = {knit.wales, knit.rows};
+  pattern.palette = palette_of(chart);
+  pattern.chart = chart_lines(chart);
+  for (size_t y = 0; y < yarns.yarns.size(); ++y) {
+    const PeriodicYarn& yarn = yarns.yarns[y];
+    PatternCurve curve;
+    curve.yarn = knit.courses[y].yarn;
+    curve.points.assign(yarns.points.begin() + yarn.first, yarns.points.begin() + yarn.first + yarn.count);
+    pattern.curves.push_back(std::move(curve));
+  }
+  recentre_z(pattern);
+  for (size_t y = 0; y < yarns.yarns.size(); ++y) {
+    auto& points = pattern.curves[y].points;
+    for (dvec3& p : points) p = rounded(p);
+    points.push_back(rounded(points.front() + dvec3(dvec2(yarns.yarns[y].shift) * pattern.period, 0)));
+  }
+  return pattern;
+}
+
+// How far the relaxation has come: first the yarn swells, then the forces fall.
+class Share {
+ public:
+  explicit Share(double wanted) : wanted_(wanted) {}
+  double operator()(double thickness, double force) {
+    if (thickness < 1) return at_ = std::max(at_, 0.6 * thickness);
+    if (start_ == 0) start_ = std::max(force, 2 * wanted_);
+    const double left = std::log(std::max(force, wanted_) / wanted_) / std::log(start_ / wanted_);
+    return at_ = std::max(at_, 1 - 0.4 * std::min(left, 1.0));
+  }
+
+ private:
+  double wanted_, start_ = 0, at_ = 0;
+};
+
+KnittedTile knit_once(const StitchChart& chart, const Knit& knit, const KnitSettings& settings, double diameters,
+                      const std::function<bool(double)>& progress) {
+  KnittedTile out;
+  PeriodicYarns yarns = loop_curves(knit, {0.5 * settings.yarn_thickness, diameters, settings.step});
+  RelaxSettings relaxing;
+  relaxing.tension = settings.tension;
+  relaxing.max_steps = settings.max_steps;
+  if (settings.period) {
+    const dvec2 stretch = *settings.period / yarns.period;
+    for (dvec3& p : yarns.points) p *= dvec3(stretch, 1);
+    yarns.period = *settings.period;
+    relaxing.free_period_x = relaxing.free_period_y = false;
+  }
+  Share share(relaxing.force_tolerance);
+  out.relaxed = relax(yarns, relaxing, [&](double thickness, double force) {
+    out.stopped = progress && !progress(share(thickness, force));
+    return !out.stopped;
+  });
+  out.loop_length = diameters * settings.yarn_thickness;
+  out.force_wanted = relaxing.force_tolerance;
+  out.gauge = dvec2(knit.wales, knit.rows) / yarns.period;
+  out.pattern = pattern_of(chart, knit, yarns);
+  out.pattern.settings = {{"yarn_thickness", settings.yarn_thickness},
+                          {"loop_length", out.loop_length},
+                          {"step", settings.step},
+                          {"course_tension", settings.tension.x},
+                          {"wale_tension", settings.tension.y}};
+  if (settings.period) {
+    out.pattern.settings.emplace_back("period_x", settings.period->x);
+    out.pattern.settings.emplace_back("period_y", settings.period->y);
+  }
+  return out;
+}
+
+// A stitch grows with its loop, nearly in proportion; where it jams the loop was too short.
+KnittedTile knit_to_gauge(const StitchChart& chart, const Knit& knit, const KnitSettings& settings,
+                          const std::function<bool(double)>& progress) {
+  constexpr int kTries = 8;
+  const int axis = settings.wales ? 0 : 1;
+  const double wanted = settings.wales ? *settings.wales : *settings.courses;
+  double length = kPlainLoop, jams = 0;
+  std::optional<KnittedTile> best;
+  const auto miss = [&](const KnittedTile& tile) { return std::abs(tile.gauge[axis] / wanted - 1); };
+  int tries = 0;
+  while (tries < kTries) {
+    KnittedTile tile = knit_once(chart, knit, settings, length,
+                                 [&](double share) { return !progress || progress((tries + share) / kTries); });
+    ++tries;
+    if (tile.stopped) {
+      tile.tries = tries;
+      return tile;
+    }
+    double next = length * tile.gauge[axis] / wanted;
+    if (!tile.relaxed.converged) {
+      jams = std::max(jams, length);
+      next = best ? 0.5 * (length + best->loop_length / settings.yarn_thickness) : 1.3 * length;
+      if (!best) best = std::move(tile);
+    } else if (!best || !best->relaxed.converged || miss(tile) < miss(*best)) {
+      best = std::move(tile);
+      if (miss(*best) <= kGaugeTolerance) break;
+    }
+    next = std::clamp(next, std::max(kShortest, jams), kLongest);
+    if (std::abs(next / length - 1) < 1e-4) break;
+    length = next;
+  }
+  best->tries = tries;
+  best->gauge_reached = miss(*best) <= kGaugeTolerance;
+  return std::move(*best);
+}
+
+}  // namespace
+
+KnittedTile knit_tile(const StitchChart& chart, const KnitSettings& settings,
+                      const std::function<bool(double)>& progress) {
+  check(settings);
+  const Knit knit = knit_chart(chart);
+  if (settings.wales || settings.courses) return knit_to_gauge(chart, knit, settings, progress);
+  const double diameters = settings.loop_length > 0 ? settings.loop_length / settings.yarn_thickness : kPlainLoop;
+  return knit_once(chart, knit, settings, diameters, progress);
+}
+
+}  // namespace wale

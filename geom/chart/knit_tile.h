@@ -1,0 +1,45 @@
+#pragma once
+#include <functional>
+#include <optional>
+
+#include "geom/chart/stitch_chart.h"
+#include "geom/pattern.h"
+#include "geom/relax/relaxation.h"
+
+namespace wale {
+
+/// How a chart is knitted. Lengths in metres.
+struct KnitSettings {
+  double yarn_thickness = 1e-3;          ///< diameter
+  double loop_length = 0;                ///< yarn in one stitch; 0: kPlainLoop yarn diameters
+  double step = 0.6;                     ///< length of a segment, in yarn diameters
+  int max_steps = RelaxSettings().max_steps;  ///< of the relaxation
+  dvec2 tension{0, 0};                   ///< along the course and the wale: RelaxSettings::tension
+  std::optional<dvec2> period;           ///< of the tile, held; else it is free
+  std::optional<double> wales, courses;  ///< gauge to reach by the loop length, per metre; at most one of them
+};
+
+/// Loop length of a fabric of medium firmness, in yarn diameters.
+constexpr double kPlainLoop = 13.2;
+/// By how much a gauge may be missed, relative.
+constexpr double kGaugeTolerance = 0.005;
+
+/// A chart that was knitted, and what was reached.
+struct KnittedTile {
+  Pattern pattern;
+  Relaxed relaxed;
+  double loop_length = 0;   ///< metres
+  double force_wanted = 0;  ///< where Relaxed::force and period_force end
+  dvec2 gauge{0, 0};        ///< wales and courses per metre
+  int tries = 1;            ///< loop lengths that were tried for the gauge
+  bool stopped = false, gauge_reached = true;
+};
+
+/// Relaxes the chart's yarns into a tile. The tile holds points to the nanometre, colours, chart and settings. Where
+/// the relaxation fails or `progress` (share done in [0,1]; false stops) ends it, `relaxed.converged` is false and the
+/// pattern is what was reached. A gauge that no loop length reaches: `gauge_reached` is false, the tile is the nearest.
+/// Throws a user error on settings that are not positive, not finite or out of all proportion.
+KnittedTile knit_tile(const StitchChart& chart, const KnitSettings& settings,
+                      const std::function<bool(double)>& progress = {});
+
+}  // namespace wale

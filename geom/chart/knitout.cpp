@@ -1,0 +1,283 @@
+// Knitout (McCann et al., textiles-lab.github.io/knitout/knitout.html): what the needles of a V-bed machine do. Each
+// pass of a carrier becomes a row: knit on the front bed k, on the back bed p, tuck t or T, loops that it leaves alone
+// s or S, with the yarn between the beds; a stitch on an empty needle is a yarn over. Transfers move loops: two on one
+// needle are a decrease, the one that came in front; blocks that changed places are a cable, the one that came back
+// first in front. The chart is the unit that repeats in the middle.
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "geom/chart/repeat_unit.h"
+#include "geom/chart/stitch_chart.h"
+#include "geom/error.h"
+#include "geom/text_lines.h"
+
+namespace wale {
+namespace {
+
+constexpr size_t kMostCells = 1'000'000;
+constexpr int kMostNeedles = 10000;
+
+// Order along the beds: number, front before back.
+struct Needle {
+  int number = 0;
+  bool back = false;
+  auto operator<=>(const Needle&) const = default;
+};
+
+std::optional<Needle> needle_of(std::string_view word) {
+  if (word.size() < 2 || (word[0] != 'f' && word[0] != 'b')) return std::nullopt;
+  const bool negative = word[1] == '-';
+  int value = 0;
+  for (const char c : word.substr(negative ? 2 : 1)) {
+    if (c < '0' || c > '9' || value > kMostNeedles) return std::nullopt;
+    value = 10 * value + (c - '0');
+  }
+  if (word.size() == 2 && negative) return std::nullopt;
+  return Needle{negative ? -value : value, word[0] == 'b'};
+}
+
+struct Held {
+  int wale = 0;     // of the row below
+  int arrival = 0;  // transfers so far when it came to this needle; 0: it was made here
+  int moved = 0;    // needles to the right since it was made
+};
+
+class Machine {
+ public:
+  explicit Machine(const std::filesystem::path& file) : file_(file.string()) {}
+
+  void line(const TextLine& line) {
+    line_ = line.number;
+    const auto& w = line.words;
+    const std::string_view op = w[0];
+    if (op == "knit" || op == "tuck" || op == "miss") {
+      if (w.size() < 4) fail(fmt::format("{} needs a direction, a needle and a carrier", op));
+      stitch(op, w);
+    } else if (op == "xfer") {
+      if (w.size() != 3) fail("xfer needs two needles");
+      end_pass();
+      transfer(named(w[1]), named(w[2]));
+    } else if (op == "drop") {
+      if (w.size() != 2) fail("drop needs a needle");
+      end_pass();
+      held_.erase(named(w[1]));
+    } else if (op == "rack") {
+      end_pass();
+      if (w.size() != 2) fail("rack needs a number");
+      const double rack = finite_number(file_, line_, w[1]);
+      if (!(rack >= -kMostNeedles && rack <= kMostNeedles)) fail("such a rack does not exist");
+      rack_ = rack;
+    } else if (op == "split" || op == "amiss") {
+      fail(fmt::format("{} is not read; valid: knit, tuck, miss, xfer, drop, rack, and carriers in and out", op));
+    } else if (op != "in" && op != "inhook" && op != "out" && op != "outhook" && op != "releasehook" && op != "pause" &&
+               !op.starts_with("x-")) {
+      fail(fmt::format("\"{}\" is no instruction; valid: knit, tuck, miss, xfer, drop, rack, and carriers in and out",
+                       one_line(std::string(op))));
+    }
+  }
+
+  StitchChart chart(const std::string& name) {
+    end_pass();
+    if (rows_.empty()) user_error("{}: no stitches", file_);
+    RepeatUnit unit = repeat_unit(rows_);
+    if (unit.rows.empty())
+      user_error(
+          "{}: no unit of stitches repeats in the middle of its {} rows ({} to {}); at least two repeats across "
+          "and two up are needed",
+          file_, rows_.size(), rows_.front().where, rows_.back().where);
+    for (size_t r = 0; r < unit.rows.size(); ++r) {
+      const Reach& reach = reach_[unit.first_row + r];
+      if (reach.first > unit.first_wale || reach.last < unit.last_wale)
+        user_error("{}:1: the yarn ends in mid-air: this pass reaches stitches {} to {}, the repeating unit {} to {}",
+                   unit.rows[r].where, reach.first + 1, reach.last + 1, unit.first_wale + 1, unit.last_wale + 1);
+    }
+    StitchChart out;
+    out.name = name;
+    out.rows = std::move(unit.rows);
+    // Yarns in the order in which they come.
+    std::map<int, int> letters;
+    for (ChartRow& row : out.rows)
+      for (int& yarn : row.yarn) {
+        const auto [at, is_new] = letters.try_emplace(yarn, int(letters.size()));
+        if (is_new) {
+          if (letters.size() > 26) user_error("{}: more than 26 carriers", row.where);
+          out.yarns.push_back({char('a' + at->second), {}});
+        }
+        yarn = at->second;
+      }
+    return out;
+  }
+
+ private:
+  enum class Op { knit, tuck };
+  struct Reach {
+    int first, last;
+  };
+
+  [[noreturn]] void fail(const std::string& what) const { user_error("{}:{}: {}", file_, line_, what); }
+
+  Needle named(std::string_view word) const {
+    const auto needle = needle_of(word);
+    if (!needle)
+      fail(fmt::format("\"{}\" is no needle; valid: f or b and a number up to {} (sliders are not read)",
+                       one_line(std::string(word)), kMostNeedles));
+    return *needle;
+  }
+
+  void stitch(std::string_view op, const std::vector<std::string_view>& words) {
+    if (words[1] != "+" && words[1] != "-")
+      fail(fmt::format("\"{}\" is no direction; valid: + and -", one_line(std::string(words[1]))));
+    const bool right = words[1] == "+";
+    const Needle needle = named(words[2]);
+    std::string carrier;
+    for (size_t i = 3; i < words.size(); ++i) carrier += std::string(words[i]) + " ";
+    const bool goes_on = pass_ && pass_->right == right && pass_->carrier == carrier &&
+                         (right ? !(needle.number < pass_->at) : !(needle.number > pass_->at)) &&
+                         !pass_->ops.contains(needle);
+    if (!goes_on) {
+      end_pass();
+      pass_ = Pass{right, carrier, needle.number, line_, {}};
+    }
+    pass_->at = needle.number;
+    if (op != "miss") pass_->ops[needle] = op == "knit" ? Op::knit : Op::tuck;
+  }
+
+  void transfer(Needle from, Needle to) {
+    if (from.back == to.back) fail("xfer goes from one bed to the other");
+    const int offset = int(rack_);  // back needle b lies at b + rack
+    if ((to.back ? from.number - to.number : to.number - from.number) != offset)
+      fail(fmt::format("at rack {} these needles do not face each other", rack_));
+    const auto at = held_.find(from);
+    if (at == held_.end()) return;
+    std::vector<Held> loops = std::move(at->second);
+    held_.erase(at);
+    ++transfers_;
+    for (Held& loop : loops) loop.arrival = transfers_, loop.moved += to.number - from.number;
+    // The last to come lies in front.
+    std::vector<Held>& there = held_[to];
+    there.insert(there.begin(), loops.begin(), loops.end());
+  }
+
+  void end_pass() {
+    if (!pass_) return;
+    const Pass pass = std::move(*pass_);
+    pass_.reset();
+    if (pass.ops.empty()) return;
+    if (cells_ > kMostCells) fail(fmt::format("more than {} stitches", kMostCells));
+    ChartRow row;
+    row.where = fmt::format("{}:{}", file_, pass.line);
+    std::vector<Needle> needles;  // that hold loops after it
+    for (const auto& [needle, loops] : held_) needles.push_back(needle);
+    for (const auto& [needle, op] : pass.ops)
+      if (!held_.contains(needle)) needles.push_back(needle);
+    std::sort(needles.begin(), needles.end());
+    const int yarn = carriers_.try_emplace(pass.carrier, int(carriers_.size())).first->second;
+    Reach reach{-1, -1};
+    for (size_t i = 0; i < needles.size(); ++i)
+      if (pass.ops.contains(needles[i])) {
+        if (reach.first < 0) reach.first = int(i);
+        reach.last = int(i);
+      }
+    int taken = 0;
+    for (size_t i = 0; i < needles.size();) {
+      const std::vector<Held>& loops = held_[needles[i]];
+      if (loops.size() == 1 && loops[0].wale > taken) {
+        i += cable(needles, i, taken, pass, row);
+        continue;
+      }
+      row.cells.push_back(cell(needles[i], loops, taken, pass));
+      ++i;
+    }
+    cells_ += needles.size();
+    row.yarn.assign(needles.size(), yarn);
+    for (size_t i = 0; i < row.cells.size(); ++i) row.cells[i].column = int(i) + 1;
+    rows_.push_back(std::move(row));
+    reach_.push_back(reach);
+    for (size_t i = 0; i < needles.size(); ++i) held_[needles[i]] = {{int(i), 0, 0}};
+  }
+
+  struct Pass {
+    bool right = true;
+    std::string carrier;
+    int at = 0, line = 0;
+    std::map<Needle, Op> ops;
+  };
+
+  static std::string needle_text(Needle n) { return fmt::format("{}{}", n.back ? 'b' : 'f', n.number); }
+
+  ChartCell cell(Needle needle, const std::vector<Held>& loops, int& taken, const Pass& pass) const {
+    const auto op = pass.ops.find(needle);
+    const bool worked = op != pass.ops.end(), tucks = worked && op->second == Op::tuck;
+    if (loops.empty()) return {Stitch::yarn_over};
+    for (size_t k = 0; k < loops.size(); ++k)
+      if (std::none_of(loops.begin(), loops.end(), [&](const Held& h) { return h.wale == taken + int(k); }))
+        crossed(needle, pass);
+    taken += int(loops.size());
+    if (loops.size() == 1) {
+      if (!worked) return {needle.back ? Stitch::slip_front : Stitch::slip};
+      if (tucks) return {needle.back ? Stitch::tuck_front : Stitch::tuck};
+      return {needle.back ? Stitch::purl : Stitch::knit};
+    }
+    if (loops.size() > 2 || needle.back || !worked || tucks)
+      user_error("{}:{}: {} loops on needle {} are {}; two that are knitted on the front bed can be read", file_,
+                 pass.line, loops.size(), needle_text(needle),
+                 !worked ? "left alone"
+                 : tucks ? "tucked"
+                         : "taken together");
+    return {loops[0].wale < loops[1].wale ? Stitch::k2tog : Stitch::ssk};
+  }
+
+  [[noreturn]] void crossed(Needle needle, const Pass& pass) const {
+    user_error("{}:{}: the loops of needle {} were moved across others in a way that is neither a decrease nor a cable",
+               file_, pass.line, needle_text(needle));
+  }
+
+  // Blocks of loops that have changed places, from needle i on; how many needles.
+  size_t cable(const std::vector<Needle>& needles, size_t i, int& taken, const Pass& pass, ChartRow& row) {
+    const auto only = [&](size_t k) -> const Held* {
+      const std::vector<Held>& loops = held_[needles[k]];
+      const auto op = pass.ops.find(needles[k]);
+      const bool knits = op != pass.ops.end() && op->second == Op::knit && !needles[k].back;
+      return loops.size() == 1 && knits ? &loops[0] : nullptr;
+    };
+    ChartCell out;
+    out.stitch = Stitch::cable;
+    const Held* first = only(i);
+    if (!first) crossed(needles[i], pass);
+    out.left = first->wale - taken;
+    size_t k = i;
+    while (k < needles.size() && only(k) && only(k)->wale == first->wale + int(k - i)) ++k;
+    out.right = int(k - i);
+    const Held* other = k < needles.size() ? only(k) : nullptr;
+    for (int n = 0; n < out.left; ++n, ++k)
+      if (k >= needles.size() || !only(k) || only(k)->wale != taken + n) crossed(needles[i], pass);
+    if (!other || out.right < 1) crossed(needles[i], pass);
+    out.left_in_front = other->arrival < first->arrival;
+    taken += out.left + out.right;
+    row.cells.push_back(out);
+    return k - i;
+  }
+
+  std::string file_;
+  int line_ = 0;
+  std::map<Needle, std::vector<Held>> held_;
+  std::optional<Pass> pass_;
+  std::map<std::string, int> carriers_;
+  std::vector<ChartRow> rows_;
+  std::vector<Reach> reach_;
+  double rack_ = 0;
+  int transfers_ = 0;
+  size_t cells_ = 0;
+};
+
+}  // namespace
+
+StitchChart parse_knitout(std::string_view text, const std::filesystem::path& file) {
+  if (!text.starts_with(";!knitout-")) user_error("{}:1: does not begin with ;!knitout-2", file.string());
+  Machine machine(file);
+  for (const TextLine& line : text_lines(text, ';')) machine.line(line);
+  return machine.chart(file.stem().string());
+}
+
+}  // namespace wale

@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "geom/chart/knit_tile.h"
+#include "geom/error.h"
+#include "host/atomic_file.h"
+#include "host/commands.h"
+#include "host/progress.h"
+#include "host/stop.h"
+
+namespace wale {
+namespace {
+
+constexpr double kPerMetre = 1e3, kTenCentimetres = 0.1;
+
+std::string reached_text(const KnittedTile& tile) {
+  const Relaxed& r = tile.relaxed;
+  return fmt::format(
+      "after {} steps the yarn has {:.0f} % of its thickness, the largest force is {:.3g} and that on the period "
+      "{:.3g} "
+      "(wanted {:g}), the closest distance {:.3f} yarn diameters",
+      r.steps, 100 * r.thickness_share, r.force, r.period_force, tile.force_wanted, r.closest);
+}
+
+void refuse_if_not_reached(const KnitArgs& args, const KnittedTile& tile) {
+  const std::string chart = args.chart.string();
+  if (tile.stopped) user_error("{}: stopped, nothing is written: {}", chart, reached_text(tile));
+  if (!tile.relaxed.converged)
+    user_error("{}: could not be relaxed, nothing is written: {}; a longer loop or a finer step may do", chart,
+               reached_text(tile));
+  if (!tile.gauge_reached)
+    user_error(
+        "{}: no loop length gives this gauge; the nearest is {:.2f} wales and {:.2f} courses per 10 cm, with "
+        "--loop {:.4f}",
+        chart, kTenCentimetres * tile.gauge.x, kTenCentimetres * tile.gauge.y, kPerMetre * tile.loop_length);
+}
+
+std::string report_text(const KnittedTile& tile, double seconds) {
+  const Pattern& p = tile.pattern;
+  const double diameter = 2 * p.yarn_radius;
+  return fmt::format(
+      "{}: {} x {} stitches, {} yarn{}\n"
+      "period       {:.4f} x {:.4f} mm\n"
+      "gauge        {:.2f} wales, {:.2f} courses per 10 cm\n"
+      "loop length  {:.4f} mm, {:.3f} yarn diameters of {:.4g} mm\n"
+      "closest      {:.4f} yarn diameters\n"
+      "forces left  {:.2g}, on the period {:.2g} (bending stiffness / diameter^2)\n"
+      "strain       {:.2g} at most\n"
+      "relaxed in   {}, {} steps{}\n",
+      p.name, p.stitches.x, p.stitches.y, p.curves.size(), p.curves.size() == 1 ? "" : "s", kPerMetre * p.period.x,
+      kPerMetre * p.period.y, kTenCentimetres * tile.gauge.x, kTenCentimetres * tile.gauge.y,
+      kPerMetre * tile.loop_length, tile.loop_length / diameter, kPerMetre * diameter, tile.relaxed.closest,
+      tile.relaxed.force, tile.relaxed.period_force, tile.relaxed.strain, duration_text(seconds), tile.relaxed.steps,
+      tile.tries > 1 ? fmt::format(", the last of {} loop lengths", tile.tries) : "");
+}
+
+std::string report_json(const KnittedTile& tile, double seconds) {
+  const Pattern& p = tile.pattern;
+  nlohmann::ordered_json json;
+  json["name"] = p.name;
+  json["stitches"] = {p.stitches.x, p.stitches.y};
+  json["yarns"] = p.curves.size();
+  json["period"] = {p.period.x, p.period.y};
+  json["wales_per_10cm"] = kTenCentimetres * tile.gauge.x;
+  json["courses_per_10cm"] = kTenCentimetres * tile.gauge.y;
+  json["yarn_thickness"] = 2 * p.yarn_radius;
+  json["loop_length"] = tile.loop_length;
+  json["closest"] = tile.relaxed.closest;
+  json["force"] = tile.relaxed.force;
+  json["period_force"] = tile.relaxed.period_force;
+  json["force_wanted"] = tile.force_wanted;
+  json["strain"] = tile.relaxed.strain;
+  json["steps"] = tile.relaxed.steps;
+  json["loop_lengths_tried"] = tile.tries;
+  json["seconds"] = seconds;
+  return json.dump(1) + "\n";
+}
+
+}  // namespace
+
+int run_knit(const KnitArgs& args) {
+  const StitchChart chart = read_chart(args.chart);
+  // Everything that can be refused is refused before the long work starts.
+  if (args.output.extension() != ".json")
+    user_error("{}: a tile is written as .json; give such a name", args.output.string());
+  require_writable_path(args.output);
+  if (!args.json.empty() && args.json != "-") require_writable_path(args.json);
+  KnitSettings settings = args.settings;
+  if (!args.period.empty()) {
+    dvec2 mm(0);
+    int end = 0;
+    if (std::sscanf(args.period.c_str(), "%lfx%lf%n", &mm.x, &mm.y, &end) != 2 || size_t(end) != args.period.size())
+      user_error("--period {}: expected WIDTHxHEIGHT in millimetres, for example 8.4x5.2", args.period);
+    settings.period = mm / kPerMetre;
+  }
+  if (args.loop_diameters > 0) settings.loop_length = args.loop_diameters * settings.yarn_thickness;
+  catch_stop_signals();
+  const auto start = std::chrono::steady_clock::now();
+  Progress bar("knit", args.quiet);
+  const KnittedTile tile = knit_tile(chart, settings, [&](double share) {
+    bar.update(share);
+    return !stop_requested();
+  });
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!tile.stopped) bar.finish(tile.relaxed.converged ? "" : "not relaxed");
+  refuse_if_not_reached(args, tile);
+  write_pattern_json(tile.pattern, args.output);
+  if (args.json == "-")
+    fmt::print("{}", report_json(tile, seconds));
+  else if (!args.json.empty())
+    write_text_file(args.json, report_json(tile, seconds));
+  if (args.json != "-") fmt::print("{}", report_text(tile, seconds));
+  return 0;
+}
+
+}  // namespace wale

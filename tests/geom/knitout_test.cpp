@@ -1,0 +1,136 @@
+// Machine instructions become the chart of the unit that repeats in them.
+#include "geom/chart/stitch_chart.h"
+#include "geom/text_lines.h"
+#include "tests/geom/tile_fixtures.h"
+
+namespace wale {
+namespace {
+
+using namespace test;
+using Lines = std::vector<std::string>;
+
+constexpr int kNeedles = 24;
+
+// A swatch: cast on, then `rows` passes to and fro of what `work` writes for the needle in the pass.
+std::string swatch(int rows, const std::function<std::string(int row, int needle, const std::string& way)>& work,
+                   const std::function<std::string(int row)>& before = {}) {
+  std::string text = ";!knitout-2\n;;Carriers: 1 2\ninhook 1\n";
+  for (int row = -2; row < rows; ++row) {
+    if (before && row >= 0) text += before(row);
+    for (int i = 1; i <= kNeedles; ++i) {
+      const int needle = row % 2 == 0 ? i : kNeedles + 1 - i;
+      const std::string way = row % 2 == 0 ? "+" : "-";
+      text += row < 0 ? fmt::format("knit {} f{} 1\n", way, needle) : work(row, needle, way);
+    }
+  }
+  return text + "outhook 1\n";
+}
+std::string knit(int, int needle, const std::string& way) { return fmt::format("knit {} f{} 1\n", way, needle); }
+StitchChart read(const std::string& text) { return parse_chart(text, "s.knitout"); }
+void refused(const std::string& text, const Lines& texts) {
+  expect_user_error([&] { read(text); }, texts);
+}
+
+TEST(Knitout, SingleJersey) { EXPECT_EQ(chart_lines(read(swatch(20, knit))), (Lines{"k"})); }
+
+TEST(Knitout, TucksAndMissedNeedles) {
+  const auto text = swatch(20, [](int row, int needle, const std::string& way) {
+    const bool odd = needle % 2;
+    return fmt::format("{} {} f{} 1\n", row % 2 && odd ? "tuck" : row % 4 == 2 && !odd ? "miss" : "knit", way, needle);
+  });
+  EXPECT_EQ(chart_lines(read(text)), (Lines{"kt", "sk", "kt", "kk"}));
+}
+
+// A V-bed knits it with both beds full, each pass on every other needle of each.
+TEST(Knitout, Interlock) {
+  std::string text = ";!knitout-2\n";
+  for (int i = 1; i <= kNeedles; ++i) text += fmt::format("knit + f{} 1\nknit + b{} 1\n", i, i);
+  for (int row = 0; row < 20; ++row) {
+    const bool odd = row % 2;
+    for (int k = 1; k <= kNeedles; ++k) {
+      const int i = odd ? kNeedles + 1 - k : k;
+      text += fmt::format("knit {} {}{} 1\n", odd ? "-" : "+", (i + row) % 2 ? 'f' : 'b', i);
+    }
+  }
+  EXPECT_EQ(chart_lines(read(text)), (Lines{"spkS", "kSsp"})) << "front and back in turn";
+}
+
+// Every fourth loop moves one needle to the right: a hole, and a decrease that leans right.
+TEST(Knitout, Lace) {
+  const auto text = swatch(24, knit, [](int row) {
+    std::string out;
+    if (row % 4 != 0) return out;
+    for (int i = 3; i < kNeedles; i += 4) out += fmt::format("xfer f{} b{}\n", i, i);
+    out += "rack 1\n";
+    for (int i = 3; i < kNeedles; i += 4) out += fmt::format("xfer b{} f{}\n", i, i + 1);
+    return out + "rack 0\n";
+  });
+  EXPECT_EQ(chart_lines(read(text)), (Lines{"kko/", "kkkk", "kkkk", "kkkk"}));
+}
+
+// Two and two change places: those that are back first lie in front.
+TEST(Knitout, Cable) {
+  const auto text = swatch(24, knit, [](int row) {
+    std::string out;
+    if (row % 4 != 0) return out;
+    for (int i = 1; i + 5 <= kNeedles; i += 6) {
+      for (int k = 1; k <= 4; ++k) out += fmt::format("xfer f{} b{}\n", i + k, i + k);
+      out += "rack 2\n";
+      for (int k = 1; k <= 2; ++k) out += fmt::format("xfer b{} f{}\n", i + k, i + k + 2);
+      out += "rack -2\n";
+      for (int k = 3; k <= 4; ++k) out += fmt::format("xfer b{} f{}\n", i + k, i + k - 2);
+      out += "rack 0\n";
+    }
+    return out;
+  });
+  const StitchChart chart = read(text);
+  EXPECT_EQ(chart.wales(), 6);
+  EXPECT_EQ(chart.rows.size(), 4u);
+  size_t cables = 0;
+  for (const ChartRow& row : chart.rows)
+    for (const ChartCell& cell : row.cells)
+      if (cell.stitch == Stitch::cable) {
+        ++cables;
+        EXPECT_EQ(cell.left, 2);
+        EXPECT_EQ(cell.right, 2);
+        EXPECT_TRUE(cell.left_in_front);
+      }
+  EXPECT_EQ(cables, 1u);
+}
+
+TEST(Knitout, WhatCannotBeRead) {
+  refused("knit + f1 1\n", {"s.knitout:1", ";!knitout-2"});
+  refused(";!knitout-2\n", {"no stitches"});
+  const std::string start = ";!knitout-2\nknit + f1 1\n";
+  refused(start + "split + f1 b1 1\n", {"s.knitout:3: split is not read"});
+  refused(start + "nit + f2 1\n", {"s.knitout:3: \"nit\" is no instruction"});
+  refused(start + "knit + g2 1\n", {"s.knitout:3: \"g2\" is no needle"});
+  refused(start + "knit + f99999999999 1\n", {"s.knitout:3", "is no needle"});
+  refused(start + "knit ? f2 1\n", {"s.knitout:3: \"?\" is no direction"});
+  refused(start + "knit + f2\n", {"s.knitout:3", "a carrier"});
+  refused(start + "xfer f1 f2\n", {"s.knitout:3", "one bed to the other"});
+  refused(start + "xfer f1 b2\n", {"s.knitout:3", "at rack 0 these needles do not face each other"});
+  refused(start + "rack nan\n", {"s.knitout:3"});
+  refused(start, {"no unit of stitches repeats"});
+}
+
+TEST(Knitout, YarnThatEndsInMidAir) {
+  // Every second row turns after three needles.
+  const auto text = swatch(20, [](int row, int needle, const std::string& way) {
+    return row % 4 >= 2 && needle > 3 ? "" : fmt::format("knit {} f{} 1\n", way, needle);
+  });
+  expect_user_error([&] { read(text); }, {"s.knitout:", "the yarn ends in mid-air: this pass reaches stitches 1 to 3"});
+}
+
+TEST(Knitout, RealSwatches) {
+  const char* data = std::getenv("WALE_REAL_DATA");
+  if (!data) GTEST_SKIP() << "skipped: real data not present";
+  const auto folder = std::filesystem::path(data) / "yarn-patterns/knitout-examples";
+  const std::pair<const char*, Lines> wanted[] = {
+      {"singlejersey", {"k"}}, {"garter", {"p", "k"}}, {"rib-1x1", {"kp"}}, {"rib-2x2", {"kkpp"}}};
+  for (const auto& [name, lines] : wanted)
+    EXPECT_EQ(chart_lines(read_chart(folder / (std::string(name) + ".knitout"))), lines) << name;
+}
+
+}  // namespace
+}  // namespace wale

@@ -1,0 +1,128 @@
+// `wale knit`: a tile beside its report, the gauge, and what it leaves behind when it fails or is stopped.
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "cli_fixture.h"
+#include "geom/pattern.h"
+#include "tests/tolerances.h"
+
+namespace wale::test {
+namespace {
+
+class CliKnit : public Cli {
+ protected:
+  std::string chart(const std::string& text, const std::string& name = "c.chart") {
+    return folder_.write(name, text).string();
+  }
+  Outcome knit(const std::string& file, const std::string& tile, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> args = {"knit", file, "-o", at(tile), "--json", at("report.json")};
+    args.insert(args.end(), more.begin(), more.end());
+    return run_wale(args, {kNoDevice});
+  }
+  nlohmann::json report() { return nlohmann::json::parse(file_text(folder_ / "report.json")); }
+  std::string knit_refused(const std::string& file, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> args = {"knit", file, "-o", at("tile.json")};
+    args.insert(args.end(), more.begin(), more.end());
+    return refused(args, 1, {kNoDevice});
+  }
+};
+
+TEST_F(CliKnit, TileHoldsItsChartAndSettings) {
+  const Outcome run = knit(chart("k p\n"), "tile.json", {"--yarn", "2", "--loop", "25"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_TRUE(contains(run.out, "loop length  25.0000 mm, 12.500 yarn diameters of 2 mm"));
+  const Pattern tile = read_pattern(folder_ / "tile.json");
+  EXPECT_EQ(tile.yarn_radius, 1e-3);
+  EXPECT_EQ(tile.stitches, ivec2(2, 1));
+  EXPECT_EQ(tile.chart, std::vector<std::string>{"kp"});
+  EXPECT_TRUE(tile.palette.empty());
+  const auto json = nlohmann::json::parse(file_text(folder_ / "tile.json"));
+  EXPECT_EQ(json["knitted_from"]["settings"]["loop_length"], 0.025);
+  const auto told = report();
+  EXPECT_NEAR(told["wales_per_10cm"].get<double>(), 0.1 * 2 / tile.period.x, 1e-3);
+  EXPECT_GE(told["closest"].get<double>(), 0.95);
+  EXPECT_LE(told["force"].get<double>(), told["force_wanted"].get<double>());
+}
+
+TEST_F(CliKnit, SameBytesAgain) {
+  const std::string file = chart("p\nk\n");
+  ASSERT_EQ(knit(file, "a.json").status, 0);
+  ASSERT_EQ(knit(file, "b.json").status, 0);
+  EXPECT_EQ(file_text(folder_ / "a.json"), file_text(folder_ / "b.json"));
+}
+
+TEST_F(CliKnit, LoopLengthFollowsFromTheGauge) {
+  const Outcome run = knit(chart("k\n"), "tile.json", {"--yarn", "1.5", "--wales", "16"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto told = report();
+  EXPECT_NEAR(told["wales_per_10cm"].get<double>(), 16, 16 * 0.0051);
+  EXPECT_NEAR(read_pattern(folder_ / "tile.json").period.x, 6.25e-3, 6.25e-3 * 0.0051);
+  EXPECT_GT(told["loop_lengths_tried"].get<int>(), 1);
+}
+
+TEST_F(CliKnit, PeriodIsHeld) {
+  ASSERT_EQ(knit(chart("k\n"), "tile.json", {"--period", "4.5x2"}).status, 0);
+  const Pattern tile = read_pattern(folder_ / "tile.json");
+  EXPECT_NEAR(tile.period.x, 4.5e-3, 1e-9);
+  EXPECT_NEAR(tile.period.y, 2e-3, 1e-9);
+}
+
+TEST_F(CliKnit, ColoursReachTheTile) {
+  ASSERT_EQ(knit(chart("yarn a: #102030\nyarn b: #ffeedd\nk2 | ab\nk2 | ba\n"), "tile.json").status, 0);
+  const Pattern tile = read_pattern(folder_ / "tile.json");
+  ASSERT_EQ(tile.palette.size(), 2u);
+  EXPECT_EQ(tile.palette[1][2], 0xdd);
+  ASSERT_EQ(tile.curves.size(), 4u);
+  EXPECT_EQ(tile.curves[0].yarn, 0);
+  EXPECT_EQ(tile.curves[1].yarn, 1);
+}
+
+TEST_F(CliKnit, ChartErrorsNameRowAndColumn) {
+  EXPECT_TRUE(contains(knit_refused(chart("kk\nkx\n")), "c.chart:2:2: \"x\" is no stitch"));
+  EXPECT_TRUE(contains(knit_refused(chart("")), "c.chart: no row of stitches"));
+  EXPECT_TRUE(contains(knit_refused(chart("[", "c.json")), "c.json:1"));
+  EXPECT_TRUE(contains(knit_refused(chart("knit", "c.knitout")), "c.knitout:1"));
+  EXPECT_TRUE(contains(knit_refused(at("none.chart")), "none.chart"));
+}
+
+TEST_F(CliKnit, SettingsOutOfProportion) {
+  const std::string file = chart("k\n");
+  EXPECT_TRUE(contains(knit_refused(file, {"--yarn", "nan"}), "--yarn: nan: a number above 0 is needed"));
+  EXPECT_TRUE(contains(knit_refused(file, {"--yarn", "1e9"}), "a yarn thickness of 1e+09 mm; valid: 0.01 to 100 mm"));
+  EXPECT_TRUE(contains(knit_refused(file, {"--loop", "1"}), "a loop length of 1 yarn diameters; valid: 6 to 100"));
+  EXPECT_TRUE(contains(knit_refused(file, {"--step", "9"}), "a resolution of 9"));
+  EXPECT_TRUE(contains(knit_refused(file, {"--course-tension", "-1"}), "a number of at least 0"));
+  EXPECT_TRUE(contains(knit_refused(file, {"--period", "3"}), "expected WIDTHxHEIGHT"));
+  EXPECT_TRUE(contains(knit_refused(file, {"--period", "nanx3"}), "a period of nan"));
+  EXPECT_TRUE(contains(knit_refused(file, {"--wales", "20", "--courses", "30"}), "ask for one of them"));
+  EXPECT_TRUE(contains(knit_refused(file, {"--loop", "12", "--wales", "20"}), "ask for one of them"));
+}
+
+TEST_F(CliKnit, TileIsJson) {
+  EXPECT_TRUE(contains(refused({"knit", chart("k\n"), "-o", at("tile.txt")}, 1, {kNoDevice}), "written as .json"));
+  EXPECT_TRUE(contains(refused({"knit", chart("k\n"), "-o", at("none/tile.json")}, 1, {kNoDevice}), "does not exist"));
+}
+
+// Held far too narrow, the yarns do not fit side by side.
+TEST_F(CliKnit, WhatCannotBeRelaxedIsNotWritten) {
+  const std::string line = knit_refused(chart("k\n"), {"--period", "1.2x1", "--steps", "40", "--quiet"});
+  EXPECT_TRUE(contains(line, "could not be relaxed, nothing is written"));
+  EXPECT_TRUE(contains(line, "% of its thickness"));
+}
+
+TEST_F(CliKnit, CtrlCWritesNothing) {
+  std::string large;
+  for (int row = 0; row < 12; ++row) large += "p2 k4 p2 c4f p2 k4 p2 c4f\n";
+  const std::string file = chart(large);
+  const size_t files = folder_.files();
+  TemporaryFolder printed;
+  Process process(printed.path(), {"knit", file, "-o", at("tile.json")}, {kNoDevice});
+  ASSERT_TRUE(process.wait_for("knit ", 60)) << process.err();
+  process.signal(SIGINT);
+  EXPECT_EQ(process.wait(60), 1) << process.err();
+  EXPECT_TRUE(contains(process.err(), "stopped, nothing is written"));
+  EXPECT_EQ(folder_.files(), files);
+}
+
+}  // namespace
+}  // namespace wale::test
