@@ -27,24 +27,34 @@ class Swelling {
   void run(double tolerance) {
     constexpr double kSoft = 0.6, kRough = 0.1;
     constexpr int kRoughSteps = 8;
-    double share = 0, hardness = kSoft;
+    double share = 0, hardness = std::min(kSoft, hard_);
     work_.barrier(1e-2, 1e-3);
     work_.look();
     // What comes nearly relaxed goes on from there.
-    if (const double room = work_.closest_samples(); 0.9 * room > kSoft) share = 1, hardness = std::min(0.9 * room, hard_);
+    if (const double room = work_.closest_samples(); 0.9 * room > hardness)
+      share = 1, hardness = std::min(0.9 * room, hard_);
+    int before = -1;
     while (!over() && (share < 1 || hardness < hard_)) {
+      const double last_share = share, last_hardness = hardness;
       work_.look();
       const double room = work_.closest_samples();
       if (share < 1)
-        share = std::clamp(0.9 * room / kSoft, share, std::min(1.0, share == 0 ? 1.0 : share * 1.25));
+        share = std::clamp(0.9 * room / hardness, share, std::min(1.0, share == 0 ? 1.0 : share * 1.25));
       else
         hardness = std::clamp(0.5 * (hardness + room), hardness, hard_);
       if (share == 1 && hardness > 0.995 * hard_ && room > hard_) hardness = hard_;
+      // Jammed: nothing gives way and nothing moves.
+      if (share == last_share && hardness == last_hardness && out_.steps == before) break;
+      before = out_.steps;
       work_.barrier(share, share * hardness);
       settle(kRough, kRoughSteps, share > kSoft || work_.strain() > 0.02, share);
       out_.thickness_share = share;
     }
-    if (share == 1 && hardness == hard_) settle(tolerance, settings_.max_steps, true, share);
+    if (share == 1 && hardness == hard_) {
+      out_.thickness_share = 1;
+      work_.barrier(1, hard_);
+      settle(tolerance, settings_.max_steps, true, share);
+    }
     out_.converged = share == 1 && hardness == hard_ && out_.force < tolerance && out_.period_force < tolerance;
     out_.strain = work_.strain();
   }

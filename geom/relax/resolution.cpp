@@ -20,9 +20,16 @@ PeriodicYarns refined(const PeriodicYarns& yarns) {
 
 std::optional<PeriodicYarns> coarsened(const PeriodicYarns& yarns, double neighbours) {
   constexpr int kSteps = 40;
-  constexpr double kReach = 1.0;
+  constexpr double kReach = 1.0, kKept = 0.5;
   for (const PeriodicYarn& yarn : yarns.yarns)
     if (yarn.count % 2 || yarn.count < 16) return std::nullopt;
+  const auto closest = [&](const PeriodicYarns& y) {
+    const std::vector<YarnSegment> all = segments_of(y);
+    double least = kReach;
+    for (const SegmentPair& pair : near_pairs(y, all, kReach, neighbours))
+      least = std::min(least, glm::length(closest_of(y, all, pair).way));
+    return least;
+  };
   PeriodicYarns work = yarns;
   const std::vector<YarnSegment> segments = segments_of(yarns);
   TileStep step;
@@ -37,6 +44,8 @@ std::optional<PeriodicYarns> coarsened(const PeriodicYarns& yarns, double neighb
     out.points.clear();
     for (size_t k = 0; k < work.points.size(); k += 2) out.points.push_back(work.points[k]);
     for (PeriodicYarn& yarn : out.yarns) yarn.first /= 2, yarn.count /= 2;
+    // Yarns that nearly touch there would have to start very thin.
+    if (closest(out) < kKept * closest(yarns)) return std::nullopt;
     return out;
   }
   return std::nullopt;
