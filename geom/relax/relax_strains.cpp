@@ -13,8 +13,8 @@ namespace {
 
 // A yarn under tension is pressed flat where it crosses another. In the published table of stockinette (MADYPG, Sperl
 // et al. 2021) the least distance of centrelines falls from 0.94 D to 0.81 D at +50 % along the course and 0.63 D at
-// +100 %; a yarn that keeps 0.95 D would have to stretch 1.9 times as much. The stiffness is what gives the
-// published length of the yarn at +50 %.
+// +100 %; a yarn that keeps 0.95 D would have to stretch 1.9 times as much. The stiffness is
+// fitted to the published length of the yarn at +50 % (bench/results/relaxation.md).
 constexpr double kCrushed = 0.2, kCrushStiffness = 1500;
 
 size_t zero_of(const std::vector<double>& strains, const char* along) {
