@@ -157,7 +157,8 @@ PeriodicYarns loop_curves(const Knit& knit, const LoopSizes& sizes) {
     PeriodicYarn yarn;
     yarn.first = uint32_t(out.points.size());
     yarn.length = lengths[row];
-    yarn.count = uint32_t(std::max(8.0, std::round(lengths[row] / (sizes.step * diameter))));
+    yarn.count =
+        2 * uint32_t(std::max(4.0, std::round(0.5 * lengths[row] / (sizes.step * diameter))));  // even: relax()
     const double whole = length_of(lines[row]), step = whole / yarn.count;
     double done = 0;
     size_t k = 0;

@@ -56,21 +56,23 @@ void NewtonSystem::rebuild(const std::vector<LocalTerm>& terms, const std::vecto
   };
   for (const LocalTerm& term : terms) place(term.point, term.count);
   for (const auto& group : spare) place(group, 4);
-  Matrix& hessian = factors_->hessian;
-  hessian.resize(long(3 * count_), long(3 * count_));
-  Eigen::VectorXi sizes(long(3 * count_));
-  for (size_t c = 0; c < count_; ++c) {
-    auto& rows = rows_[c];
+  size_t blocks = 0;
+  for (auto& rows : rows_) {
     std::sort(rows.begin(), rows.end());
     rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-    for (int a = 0; a < 3; ++a) sizes[long(3 * c) + a] = int(3 * rows.size()) - a;
+    blocks += rows.size();
   }
-  hessian.reserve(sizes);
+  Matrix& hessian = factors_->hessian;
+  hessian.resize(long(3 * count_), long(3 * count_));
+  hessian.resizeNonZeros(long(9 * blocks - 3 * count_));
+  int at = 0;
   for (size_t c = 0; c < count_; ++c)
-    for (int a = 0; a < 3; ++a)
+    for (int a = 0; a < 3; ++a) {
+      hessian.outerIndexPtr()[3 * c + size_t(a)] = at;
       for (const uint32_t r : rows_[c])
-        for (int b = r == c ? a : 0; b < 3; ++b) hessian.insert(long(3 * r) + b, long(3 * c) + a) = 0;
-  hessian.makeCompressed();
+        for (int b = r == c ? a : 0; b < 3; ++b) hessian.innerIndexPtr()[at++] = int(3 * r) + b;
+    }
+  hessian.outerIndexPtr()[3 * count_] = at;
   factors_->analysed = false;
 }
 

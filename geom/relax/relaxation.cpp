@@ -1,67 +1,121 @@
 #include "geom/relax/relaxation.h"
 
 #include <algorithm>
-#include <cmath>
+#include <chrono>
 
 #include "geom/relax/descent.h"
+#include "geom/relax/resolution.h"
 #include "geom/relax/step_bound.h"
 
 namespace wale {
 namespace {
 
-constexpr double kSoft = 0.6;
+using Clock = std::chrono::steady_clock;
+
+// Relaxes yarns of one resolution, in units of their diameter.
+class Swelling {
+ public:
+  Swelling(PeriodicYarns& yarns, const RelaxSettings& settings, Clock::time_point end,
+           const std::function<bool(double, double)>& progress, Relaxed& out)
+      : settings_(settings), work_(yarns, settings), end_(end), progress_(progress), out_(out) {
+    double longest = 0;
+    for (const PeriodicYarn& y : yarns.yarns) longest = std::max(longest, y.length / y.count);
+    hard_ = barrier_for(settings.closest, 1.01 * longest, settings.contact_samples);
+  }
+
+  // The yarn swells under a wide barrier, from kSoft of its diameter on; with its whole diameter the barrier narrows.
+  void run(double tolerance) {
+    constexpr double kSoft = 0.6, kRough = 0.1;
+    constexpr int kRoughSteps = 8;
+    double share = 0, hardness = std::min(kSoft, hard_);
+    work_.barrier(1e-2, 1e-3);
+    work_.look();
+    // What comes nearly relaxed goes on from there.
+    if (const double room = work_.closest_samples(); 0.9 * room > hardness)
+      share = 1, hardness = std::min(0.9 * room, hard_);
+    int before = -1;
+    while (!over() && (share < 1 || hardness < hard_)) {
+      const double last_share = share, last_hardness = hardness;
+      work_.look();
+      const double room = work_.closest_samples();
+      if (share < 1)
+        share = std::clamp(0.9 * room / hardness, share, std::min(1.0, share == 0 ? 1.0 : share * 1.25));
+      else
+        hardness = std::clamp(0.5 * (hardness + room), hardness, hard_);
+      if (share == 1 && hardness > 0.995 * hard_ && room > hard_) hardness = hard_;
+      // Jammed: nothing gives way and nothing moves.
+      if (share == last_share && hardness == last_hardness && out_.steps == before) break;
+      before = out_.steps;
+      work_.barrier(share, share * hardness);
+      settle(kRough, kRoughSteps, share > kSoft || work_.strain() > 0.02, share);
+      out_.thickness_share = share;
+    }
+    if (share == 1 && hardness == hard_) {
+      out_.thickness_share = 1;
+      work_.barrier(1, hard_);
+      settle(tolerance, settings_.max_steps, true, share);
+    }
+    out_.converged = share == 1 && hardness == hard_ && out_.force < tolerance && out_.period_force < tolerance;
+    out_.strain = work_.strain();
+  }
+
+ private:
+  bool over() const { return stopped_ || out_.steps >= settings_.max_steps || Clock::now() > end_; }
+
+  void settle(double tolerance, int most, bool free_period, double share) {
+    work_.free_period(free_period);
+    for (int step = 0; step < most && !over(); ++step) {
+      work_.look();
+      out_.force = work_.force(), out_.period_force = work_.period_force();
+      if (out_.force < tolerance && out_.period_force < tolerance) return;
+      if (progress_ && !progress_(share, out_.force)) stopped_ = true;
+      if (stopped_ || !work_.step()) return;
+      ++out_.steps;
+    }
+  }
+
+  const RelaxSettings& settings_;
+  Descent work_;
+  Clock::time_point end_;
+  const std::function<bool(double, double)>& progress_;
+  Relaxed& out_;
+  double hard_ = 0;
+  bool stopped_ = false;
+};
 
 }  // namespace
 
 Relaxed relax(PeriodicYarns& yarns, const RelaxSettings& settings,
               const std::function<bool(double, double)>& progress) {
+  constexpr double kCoarseTolerance = 0.03, kCoarseClosest = 0.9;
   const double diameter = 2 * yarns.radius;
+  const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                      std::chrono::duration<double>(std::min(settings.max_seconds, 1e6)));
   PeriodicYarns scaled = yarns;
   for (dvec3& p : scaled.points) p /= diameter;
   for (PeriodicYarn& y : scaled.yarns) y.length /= diameter;
   scaled.period /= diameter;
-  double longest = 0;
-  for (const PeriodicYarn& y : scaled.yarns) longest = std::max(longest, y.length / y.count);
-  const double hard = barrier_for(settings.closest, 1.01 * longest, settings.contact_samples);
-  Descent work(scaled, settings);
   Relaxed out;
-  const auto finish = [&] {
-    out.strain = work.strain();
-    for (size_t i = 0; i < yarns.points.size(); ++i) yarns.points[i] = scaled.points[i] * diameter;
-    yarns.period = scaled.period * diameter;
-    out.closest = closest_distance(yarns, settings.neighbours * diameter, 1.8 * diameter) / diameter;
-    return out;
+  bool go_on = true;
+  const std::function<bool(double, double)> report = [&](double share, double force) {
+    return go_on = !progress || progress(share, force);
   };
-  const auto settle = [&](double tolerance, int most, bool free_period) {
-    work.free_period(free_period);
-    for (int step = 0; step < most; ++step) {
-      work.look();
-      out.force = work.force(), out.period_force = work.period_force();
-      if (out.force < tolerance && out.period_force < tolerance) return;
-      if (!work.step()) return;
-      ++out.steps;
+  if (settings.coarse_first) {
+    // Half the points do for the long way; cutting segments in two moves nothing.
+    if (auto coarse = coarsened(scaled, settings.neighbours)) {
+      RelaxSettings rough = settings;
+      rough.contact_samples *= 2;
+      rough.closest = kCoarseClosest;
+      Swelling(*coarse, rough, end, report, out).run(std::max(kCoarseTolerance, settings.force_tolerance));
+      scaled = refined(*coarse);
+      out.converged = false;
     }
-  };
-  // The yarn swells under a wide barrier, from kSoft of its diameter on; with its whole diameter the barrier narrows.
-  double share = 0, hardness = kSoft;
-  work.barrier(0.01, 0.005);
-  while (out.steps < settings.max_steps && (share < 1 || hardness < hard)) {
-    work.look();
-    const double room = work.closest_samples();
-    if (share < 1)
-      share = std::clamp(0.9 * room / kSoft, share * 1.0, std::min(1.0, share == 0 ? 1.0 : share * 1.25));
-    else
-      hardness = std::clamp(0.5 * (hardness + room), hardness, hard);
-    if (share == 1 && hardness > 0.995 * hard && room > hard) hardness = hard;
-    work.barrier(share, share * hardness);
-    settle(0.1, 8, share > 0.6 || work.strain() > 0.02);
-    out.thickness_share = share;
-    if (progress && !progress(share, out.force)) return finish();
   }
-  settle(settings.force_tolerance, std::max(0, settings.max_steps - out.steps), true);
-  finish();
-  out.converged = share >= 1 && hardness >= hard && out.force < settings.force_tolerance &&
-                  out.period_force < settings.force_tolerance && out.closest >= settings.closest;
+  if (go_on) Swelling(scaled, settings, end, report, out).run(settings.force_tolerance);
+  for (size_t i = 0; i < yarns.points.size(); ++i) yarns.points[i] = scaled.points[i] * diameter;
+  yarns.period = scaled.period * diameter;
+  out.closest = closest_distance(yarns, settings.neighbours * diameter, 1.8 * diameter) / diameter;
+  out.converged = out.converged && out.closest >= settings.closest;
   return out;
 }
 

@@ -17,7 +17,9 @@ struct RelaxSettings {
   dvec2 tension{0, 0};              ///< force on the whole sides of the tile, along x and along y, B / D^2
   bool free_period_x = true, free_period_y = true;
   double force_tolerance = 2e-3;  ///< largest force on a point and on the period's sides, B / D^2
+  bool coarse_first = true;       ///< with every second point first, where that is safe
   int max_steps = 3000;
+  double max_seconds = 600;
 };
 
 /// What was reached.
@@ -31,10 +33,11 @@ struct Relaxed {
   double thickness_share = 0;  ///< of the yarn's diameter that the relaxation came to; 1 unless it failed
 };
 
-/// Moves the points and the period to a state of least energy: bending of an inextensible yarn that slides without
-/// friction, and contact. Yarns start thin and swell until they have their diameter. Each step is bounded by the
-/// distances between segments, so that none passes through another (relax.cpp). Deterministic.
-/// `progress` gets the share of the diameter and returns false to stop.
+/// Moves the points and the period to a state of least energy: bending of a yarn that hardly stretches and slides
+/// without friction, and contact. Yarns start thin and swell until they have their diameter. No yarn passes through
+/// another (step_bound.cpp). Stops on forces, on max_steps or max_seconds, or where no step leads further down.
+/// Deterministic, but for what max_seconds cuts off. `progress` gets the share of the diameter that the yarns have and
+/// the force left, on every step, and returns false to stop.
 Relaxed relax(PeriodicYarns& yarns, const RelaxSettings& settings,
               const std::function<bool(double share, double force)>& progress = {});
 
