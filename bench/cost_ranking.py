@@ -25,7 +25,12 @@ FIGURES = {
 def read(path):
     with open(path, encoding="utf-8") as source:
         report = json.load(source)
-    return report, {(row["option"], row["level"]): row for row in report["levels"] if "left_out" not in row}
+    rows = {}
+    for row in report["levels"]:
+        if "left_out" not in row:  # the scene as it is has a row in every option; it is one level
+            own = row["note"] == "the scene as it is"
+            rows[("the scene", "") if own else (row["option"], row["level"])] = row
+    return report, rows
 
 
 def order(a, b):

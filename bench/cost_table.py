@@ -20,7 +20,7 @@ def error(figure):
         return "-"
     if figure["resolved"]:
         return percent(figure["relative_mse"]) if figure["relative_mse"] > 0 else "none"
-    return "< " + percent(max(figure["relative_mse"], 0) + figure["high"] - figure["relative_mse"])
+    return "< " + percent(max(figure["relative_mse"], 0) + figure["high"] - figure["relative_mse"])  # Bias::limit()
 
 
 def main():

@@ -76,7 +76,7 @@ void add_knit_options(CLI::App& command, wale::KnitArgs& args) {
   scaled("--step", 1, "resolution: length of a segment in yarn diameters; 0.6 unless given",
          [&s](double v) { s.step = v; });
   command.add_option("--steps", s.max_steps, "steps of the relaxation, at most")->check(CLI::Range(1, 1 << 24));
-  scaled("--course-tension", 1, "pull along the rows, bending stiffness / diameter^3",
+  scaled("--course-tension", 1, "pull along the rows on a side of the tile, bending stiffness / diameter^2",
          [&s](double v) { s.tension.x = v; });
   scaled("--wale-tension", 1, "pull along the columns", [&s](double v) { s.tension.y = v; });
   command.add_option("--period", args.period, "WIDTHxHEIGHT of the tile in mm, held; free unless given");

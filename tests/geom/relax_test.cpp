@@ -20,7 +20,7 @@ struct Tile {
 };
 
 PeriodicYarns start_of(const char* chart, double radius, double loop_length, Knit* knit = nullptr) {
-  const Knit made = knit_chart(parse_chart(chart, "test"), "test");
+  const Knit made = knit_chart(parse_chart(chart, "test"));
   if (knit) *knit = made;
   LoopSizes sizes;
   sizes.yarn_radius = radius;
