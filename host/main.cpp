@@ -60,15 +60,18 @@ void add_features_option(CLI::App& command, wale::Features& also) {
 void add_knit_options(CLI::App& command, wale::KnitArgs& args) {
   wale::KnitSettings& s = args.settings;
   const auto scaled = [&command](const char* name, double scale, const char* doc, std::function<void(double)> set) {
-    return command.add_option_function<double>(name, [scale, set](const double& v) { set(v * scale); }, doc)
+    return command
+        .add_option_function<double>(
+            name, [scale, set](const double& v) { set(v * scale); }, doc)
         ->check(finite_number(std::string_view(name).ends_with("tension")));
   };
   command.add_option("CHART", args.chart, "stitch chart: text, .json or .knitout")->required();
   command.add_option("-o,--output", args.output, "tile to write (.json)")->required();
   scaled("--yarn", 1e-3, "thickness of the yarn, mm; 1 unless given", [&s](double v) { s.yarn_thickness = v; });
   auto* loop = scaled("--loop", 1e-3, "yarn in one stitch, mm", [&s](double v) { s.loop_length = v; });
-  auto* diameters = command.add_option("--loop-diameters", args.loop_diameters,
-                                       "yarn in one stitch, in yarn diameters; 13.2 unless given")
+  auto* diameters = command
+                        .add_option("--loop-diameters", args.loop_diameters,
+                                    "yarn in one stitch, in yarn diameters; 13.2 unless given")
                         ->check(finite_number(false));
   diameters->excludes(loop);
   scaled("--wales", 10, "wales per 10 cm to reach by the loop length", [&s](double v) { s.wales = v; });

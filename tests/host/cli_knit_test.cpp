@@ -52,11 +52,11 @@ TEST_F(CliKnit, SameBytesAgain) {
 }
 
 TEST_F(CliKnit, LoopLengthFollowsFromTheGauge) {
-  const Outcome run = knit(chart("k\n"), "tile.json", {"--yarn", "1.5", "--wales", "16"});
+  const Outcome run = knit(chart("k\n"), "tile.json", {"--yarn", "1.5", "--wales", "17"});
   ASSERT_EQ(run.status, 0) << run.err;
   const auto told = report();
-  EXPECT_NEAR(told["wales_per_10cm"].get<double>(), 16, 16 * 0.0051);
-  EXPECT_NEAR(read_pattern(folder_ / "tile.json").period.x, 6.25e-3, 6.25e-3 * 0.0051);
+  EXPECT_NEAR(told["wales_per_10cm"].get<double>(), 17, 17 * 0.0051);
+  EXPECT_NEAR(read_pattern(folder_ / "tile.json").period.x, 0.1 / 17, 0.1 / 17 * 0.0051);
   EXPECT_GT(told["loop_lengths_tried"].get<int>(), 1);
 }
 

@@ -86,7 +86,8 @@ TEST(PlyColors, YarnsOfTheTileTakeThePalette) {
     for (uint32_t k = 0; k < 2 * run.count; ++k)
       EXPECT_EQ(words[run.first_vertex + k], pack_ply_color(yarns[run.color]));
   yarn.plies = {{0, 1, 0}};
-  EXPECT_EQ(bake_ply_colors(fabric, yarn, {}, {}, yarns)[0], pack_ply_color({0, 1, 0})) << "the material's plies go first";
+  EXPECT_EQ(bake_ply_colors(fabric, yarn, {}, {}, yarns)[0], pack_ply_color({0, 1, 0}))
+      << "the material's plies go first";
 }
 
 TEST(PlyColors, ScenesReplaceThePaletteOfTheTile) {
@@ -109,7 +110,7 @@ TEST(PlyColors, RunsKnowTheirYarnInTheTile) {
   tile.period.y *= 2;
   tile.curves.push_back(second);
   FabricSpec spec;
-  spec.scale.repeats = {6, 3};
+  spec.scale.repeats = {500, 430};  // a metre; the UVs are metres
   const Fabric fabric = knit_fabric(make_swatch(0.012, 0.007, 4, 4), tile, spec);
   size_t count[2] = {0, 0};
   for (const PlyRun& run : fabric.runs) {
