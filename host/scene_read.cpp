@@ -347,9 +347,13 @@ Scene scene_of(JsonNode root, const std::filesystem::path& file, const std::vect
     if (scene.lights.back().kind == LightScene::Kind::environment && ++environments > 1)
       fail(node, fmt::format("lights.{}", i), "a second environment light; a scene has at most one");
   }
+  const auto& tracks = root["animation"]["keys"].members;
+  const bool keyed_fabrics =
+      std::any_of(tracks.begin(), tracks.end(), [](const auto& track) { return track.key.starts_with("fabrics."); });
   const auto moving = [](const auto& list) {
     return std::any_of(list.begin(), list.end(), [](const auto& item) { return item.mesh.sequence.has_value(); });
   };
+  for (FabricScene& fabric : scene.fabrics) fabric.moves = fabric.mesh.sequence.has_value() || keyed_fabrics;
   scene.animation.moves |= moving(scene.fabrics) || moving(scene.objects) || moving(scene.lights);
   if (scene.lights.empty()) {
     scene.lights.emplace_back();
