@@ -81,8 +81,7 @@ void take_scale(std::vector<Chart>& charts, const std::vector<Chart>& rest, cons
     double best_share = 0.5;
     for (const Chart& other : rest) {
       const double common = area(glm::max(chart.uv_min, other.uv_min), glm::min(chart.uv_max, other.uv_max));
-      const double share =
-          common / (area(chart.uv_min, chart.uv_max) + area(other.uv_min, other.uv_max) - common);
+      const double share = common / (area(chart.uv_min, chart.uv_max) + area(other.uv_min, other.uv_max) - common);
       if (share > best_share) best_share = share, best = &other;
     }
     if (!best)

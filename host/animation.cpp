@@ -55,7 +55,8 @@ void apply_key_frames(JsonNode& document) {
     const std::string name = "animation.keys." + path;
     const std::string first = path.substr(0, path.find('.'));
     if (std::find(kNeverKeyed.begin(), kNeverKeyed.end(), first) != kNeverKeyed.end())
-      fail_at(place, name, "cannot change from frame to frame; key values of the camera, materials, fabrics, lights ...");
+      fail_at(place, name,
+              "cannot change from frame to frame; key values of the camera, materials, fabrics, lights ...");
     apply_override(document, path, KeyTrack(list, name, way).at(frame), place.text() + ": " + name);
   }
 }

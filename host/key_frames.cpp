@@ -45,8 +45,8 @@ KeyWay way_of(const JsonNode& node, const std::string& path) {
   const auto& ways = key_ways();
   const auto found = std::find(ways.begin(), ways.end(), node.text);
   if (node.kind != Kind::string || found == ways.end())
-    fail_at(node.place, path, fmt::format("{} is no way from one key to the next; {}", node.describe(),
-                                          nearest_choice(node.text, ways)));
+    fail_at(node.place, path,
+            fmt::format("{} is no way from one key to the next; {}", node.describe(), nearest_choice(node.text, ways)));
   return KeyWay(found - ways.begin());
 }
 
@@ -86,8 +86,8 @@ KeyTrack::KeyTrack(const JsonNode& list, const std::string& path, KeyWay otherwi
 }
 
 JsonNode KeyTrack::at(double frame) const {
-  const auto next = std::upper_bound(keys_.begin(), keys_.end(), frame,
-                                     [](double f, const Key& key) { return f < key.frame; });
+  const auto next =
+      std::upper_bound(keys_.begin(), keys_.end(), frame, [](double f, const Key& key) { return f < key.frame; });
   if (next == keys_.begin()) return keys_.front().value;
   const size_t i = size_t(next - keys_.begin()) - 1;
   const Key& key = keys_[i];

@@ -170,6 +170,7 @@ class Job {
     const uint64_t spp = uint64_t(options_.spp), moments = std::min<uint64_t>(options_.moments, spp);
     for (uint64_t k = 0; k < moments; ++k) {
       if (k > 0) {
+        for (const auto& wave : waves_) wave->leave_scene();
         const Moment moment = options_.at_moment(uint32_t(k));
         if (moment.devices.size() != waves_.size()) bug("render: a moment on other devices");
         frame_ = frame_of(*moment.world, integrator);
@@ -177,6 +178,10 @@ class Job {
           const DriverCall guard;
           const Features features =
               features_of(moment.devices[d].device->traits(), *moment.world, integrator, options_);
+          if (!waves_[d]->serves(*moment.devices[d].scene, features))
+            user_error(
+                "motion blur: the scene needs other programs at another moment of this frame; build them all in with "
+                "--features all");
           waves_[d]->rebind(*moment.devices[d].scene, features, moment.world->camera, true);
         }
       }

@@ -75,13 +75,14 @@ SceneDevice::SceneDevice(const Device& device, const World& world, const SceneDe
   shares_fabrics_ = previous && previous->key_ == key_ && previous->fabrics_->somewhere;
   const std::vector<MeshPlace> places = places_of(world);
   const std::vector<FabricInput> inputs = fabric_inputs(world);
-  const bool lattice = std::any_of(inputs.begin(), inputs.end(), [](const auto& i) { return !i.fabric->lattice.empty(); });
+  const bool lattice =
+      std::any_of(inputs.begin(), inputs.end(), [](const auto& i) { return !i.fabric->lattice.empty(); });
   const bool updatable = options.updatable || (!places.empty() && !lattice && world.local_stage == LocalStage::exact);
   if (shares_fabrics_ && previous->fabrics_->places != places) shares_fabrics_ = previous->fabric().warp != nullptr;
   const DriverCall guard;
   if (!shares_fabrics_) {
-    fabrics_ = std::make_shared<Fabrics>(Fabrics{
-        upload_fabrics(device, inputs, world.origin, world.local_stage, updatable, world.leaf_form), places});
+    fabrics_ = std::make_shared<Fabrics>(
+        Fabrics{upload_fabrics(device, inputs, world.origin, world.local_stage, updatable, world.leaf_form), places});
   } else {
     fabrics_ = previous->fabrics_;
     moved_fabrics_ = fabrics_->places != places;

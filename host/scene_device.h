@@ -80,7 +80,7 @@ class SceneDevice {
   struct Fabrics {
     FabricDevice device;
     std::vector<MeshPlace> places;  ///< of those that follow their mesh
-    bool somewhere = true;  ///< false after a failure in moving them
+    bool somewhere = true;          ///< false after a failure in moving them
   };
   std::shared_ptr<Fabrics> fabrics_;
   Buffer<WPlyMaterial> ply_materials_;

@@ -55,8 +55,8 @@ Type integrator() {
        "how segments of a ply meet: cut square, with a sphere, or cut by the bisecting plane", "mitre"},
       {"normals", word({"flat", "linear", "rotation-minimising"}),
        "frames that plies are shaded with: of each segment, or interpolated between joints", "rotation-minimising"},
-      {"vertices", word({"quantised", "full"}),
-       "how stored curves keep their points: 16 bits a coordinate, or floats", "full"},
+      {"vertices", word({"quantised", "full"}), "how stored curves keep their points: 16 bits a coordinate, or floats",
+       "full"},
       {"precision", word({"float", "double"}), "arithmetic of rays and shading (needs a device with fp64)", "float"},
       {"ply_shadows", word({"attenuated", "opaque"}),
        "whether plies let the uncollided light of a lamp pass, as they do on paths", "attenuated"},
@@ -126,7 +126,8 @@ Type pattern() {
       {"stitches", vector(2, {1, 10000}, Unit::none, true), "wales and courses in the tile"},
       {"unit", number({1e-9, 1e3}), "metres per unit of the file"},
   });
-  const auto built_in = object({{"builtin", word(bundled_tiles()), "stockinette in closed form, or a relaxed tile of docs/patterns.md", "", true}});
+  const auto built_in = object({{"builtin", word(bundled_tiles()),
+                                 "stockinette in closed form, or a relaxed tile of docs/patterns.md", "", true}});
   return either({{"", file()}, {"file", named}, {"builtin", built_in}});
 }
 
@@ -165,7 +166,8 @@ Type fabric() {
           {"detail", word({"none", "paper", "maps", "fibres"}),
            "of plies: the tube, maps as KNIT21, maps, or explicit fibres", "maps"},
           {"strain", word({"affine", "relaxed"}),
-           "of loops where the cloth is stretched: scaled with it, or as the tile's own table of strains says", "affine"},
+           "of loops where the cloth is stretched: scaled with it, or as the tile's own table of strains says",
+           "affine"},
           {"storage", word({"auto", "stored", "procedural"}),
            "points of plies kept, or warped from a lattice where a ray needs them; auto = by size", "auto"},
           {"lattice", count(0, 64),

@@ -73,17 +73,18 @@ void Wavefront::bind_intersect(const char* name) {
 }
 
 void Wavefront::take_packets() {
-  if (!waiting_ || is_being_compiled(device_, waiting_->file, options(), kernel_dir_)) return;
-  const cl::Program program = build_program(device_, waiting_->file, options(), kernel_dir_);
+  if (!waiting_ || is_being_compiled(device_, waiting_->file, options_, kernel_dir_)) return;
+  const cl::Program program = build_program(device_, waiting_->file, options_, kernel_dir_);
   kernels_["intersect_packets"] = cl::Kernel(program, "intersect_packets");
   bind_intersect("intersect_packets");
   waiting_.reset();
 }
 
 void Wavefront::build_programs() {
+  options_ = features_.options() + scene_->options();
   auto programs = programs_of(wavefront_stages(features_), device_.traits().compiles_at_launch);
   const auto wait = std::find_if(programs.begin(), programs.end(), [&](const StageProgram& program) {
-    return program.can_wait && is_being_compiled(device_, program.file, options(), kernel_dir_);
+    return program.can_wait && is_being_compiled(device_, program.file, options_, kernel_dir_);
   });
   if (wait != programs.end()) {
     waiting_ = *wait;
@@ -97,7 +98,7 @@ void Wavefront::build_programs() {
   for (const auto& one : programs)
     builds.push_back(std::async(policy, [&, file = one.file] {
       const auto start = Clock::now();
-      cl::Program program = build_program(device_, file, options(), kernel_dir_);
+      cl::Program program = build_program(device_, file, options_, kernel_dir_);
       return std::pair(program, std::chrono::duration<double>(Clock::now() - start).count());
     }));
   for (size_t i = 0; i < programs.size(); ++i) {

@@ -377,7 +377,7 @@ class Builder {
   bool done_ = false;
   World world_;
   Bounds bounds_, fabric_bounds_;
-  Bounds moving_;  ///< of the middles of fabrics that follow their mesh
+  Bounds moving_;        ///< of the middles of fabrics that follow their mesh
   size_t vertices_ = 0;  ///< of the fabrics so far
   std::vector<Triangle> triangles_;
   std::vector<Sphere> spheres_;
