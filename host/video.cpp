@@ -7,10 +7,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <fstream>
 #include <string>
+#include <string_view>
 
 #include "geom/error.h"
 #include "host/atomic_file.h"
@@ -106,7 +108,10 @@ void require_video(const fs::path& file) {
         "{}: videos are made by ffmpeg, which is not installed (apt-get install ffmpeg); render the frames without "
         "--video",
         file.string());
-  if (!file.has_extension()) user_error("{}: a video needs a suffix: .mp4, .mkv, .webm", file.string());
+  constexpr std::array<std::string_view, 4> kSuffixes = {".mp4", ".mkv", ".mov", ".webm"};
+  if (std::find(kSuffixes.begin(), kSuffixes.end(), file.extension().string()) == kSuffixes.end())
+    user_error("{}: videos are written as .mp4, .mkv, .mov or .webm, not \"{}\"", file.string(),
+               file.extension().string());
   require_writable_path(file);
 }
 
