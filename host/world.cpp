@@ -82,13 +82,24 @@ class Builder {
       Fabric& made = world_.fabrics.back();
       add_bounds(made, fabric.transform);
       world_.fabric_material.push_back(uint32_t(world_.ply_materials.size()));
-      world_.ply_materials.push_back(ply_material(yarn));
+      const MadeYarn& material = make_yarn(yarn, made.report.fibres > 0);
+      world_.ply_materials.push_back(material.ply);
       world_.fibres.add(fibre_recipe(yarn), made.ply_radius, fabric.spec.detail);
       const bool fibres = made.report.fibres > 0;
       world_.fabric_fibre_material.push_back(fibres ? uint32_t(world_.fibre_materials.size()) : W_NONE);
-      if (fibres) world_.fibre_materials.push_back(fibre_material(yarn));
+      if (fibres) world_.fibre_materials.push_back(*material.fibre);
       color_plies(made, yarn, fabric.color_image, knitted[f].yarn_colors);
     }
+  }
+
+  // As an earlier version has it, if it is the same.
+  const MadeYarn& make_yarn(const PlyAppearance& yarn, bool fibres) {
+    if (previous_)
+      for (const MadeYarn& made : previous_->made_yarns)
+        if (made.from == yarn && made.fibre.has_value() == fibres) return world_.made_yarns.emplace_back(made);
+    MadeYarn made{yarn, ply_material(yarn), {}};
+    if (fibres) made.fibre = fibre_material(yarn);
+    return world_.made_yarns.emplace_back(std::move(made));
   }
 
   void take(KnittedFabric& knitted) {

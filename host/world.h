@@ -39,6 +39,13 @@ struct Knitting {
   std::optional<MeshPlace> place;  ///< of a fabric that follows its mesh; absent: it was knitted where it is
 };
 
+/// What an appearance becomes on the device: solved for its colour, which takes as long as moving a fabric.
+struct MadeYarn {
+  PlyAppearance from;
+  WPlyMaterial ply;
+  std::optional<WFibreMaterial> fibre;  ///< where fibres are explicit
+};
+
 /// A scene made concrete on the host: knitted fabrics, triangles, lights and materials, ready to be uploaded. Positions
 /// of fabrics are in double; everything in float is relative to `origin`.
 struct World {
@@ -46,6 +53,7 @@ struct World {
   std::vector<Fabric> fabrics;
   std::vector<Knitting> knittings;  ///< per fabric
   std::vector<MeshReport> fabric_mesh_reports;
+  std::vector<MadeYarn> made_yarns;  ///< per fabric, before anything was dropped
   std::vector<WPlyMaterial> ply_materials;
   std::vector<uint32_t> fabric_material;        ///< per fabric, into ply_materials
   FibreTables fibres;                           ///< detail maps of every ply material
