@@ -31,6 +31,7 @@ struct FabricDevice {
   size_t vertex_count = 0, segment_count = 0, patch_count = 0, cell_count = 0, triangle_count = 0, node_count = 0;
   size_t bytes = 0;  ///< that stay on the device
   double warp_seconds = 0, pack_seconds = 0, build_seconds = 0;
+  double move_seconds = 0, refit_seconds = 0;  ///< of the last update: warp; leaves and nodes
 };
 
 /// Warps, packs and uploads. `origin` is subtracted from base positions in double. `updatable`: keep what

@@ -77,6 +77,24 @@ FabricSpec resolved(const Scene& scene, const FabricScene& fabric) {
   return spec;
 }
 
+// Fabrics that follow their mesh keep points, frames and tree; the others are knitted anew for every frame: where the
+// knit itself follows from the mesh, by its triangles, its strain or a lattice.
+bool follows_mesh(const FabricScene& fabric) {
+  return fabric.moves && !(fabric.mesh.sequence && fabric.mesh.sequence->changing) &&
+         fabric.spec.strain == LoopStrain::affine && fabric.spec.lattice == 0 &&
+         fabric.spec.storage != Storage::procedural;
+}
+
+// Of a fabric that is knitted anew: its scale is that of the mesh at rest.
+std::shared_ptr<const BaseMesh> rest_of(const FabricScene& fabric, const Loaders& loaders) {
+  if (!fabric.mesh.sequence) return nullptr;
+  auto rest = std::make_shared<BaseMesh>(load_rest_mesh(fabric.mesh, loaders));
+  require_uv(*rest);
+  join_duplicate_vertices(*rest);
+  transform_mesh(*rest, fabric.transform);
+  return rest;
+}
+
 void knit(const Pattern& pattern, BaseMesh mesh, KnittedFabric& out) {
   require_uv(mesh);
   FabricSpec spec = out.knitting.order.spec;
@@ -94,6 +112,7 @@ void knit(const Pattern& pattern, BaseMesh mesh, KnittedFabric& out) {
   out.fabric =
       choice.lattice ? knit_lattice(std::move(mesh), pattern, spec) : knit_fabric(std::move(mesh), pattern, spec);
   if (choice.lattice) notes.push_back(lattice_note(out.fabric, choice));
+  if (out.knitting.place) out.fabric.mesh.rest = std::make_shared<BaseMesh>(out.fabric.mesh);
 }
 
 std::optional<size_t> find_same(const World* previous, const KnitOrder& order,
@@ -108,6 +127,16 @@ std::optional<size_t> find_same(const World* previous, const KnitOrder& order,
 
 }  // namespace
 
+void follow_mesh(Fabric& fabric, const BaseMesh& moved) {
+  BaseMesh& mesh = fabric.mesh;
+  if (mesh.triangle.size() != moved.triangle.size())
+    bug("fabric \"{}\": {} triangles cannot follow {}", fabric.name, mesh.triangle.size(), moved.triangle.size());
+  // Backwards, so that a vertex that stands for several is where the first of them is.
+  for (size_t t = mesh.triangle.size(); t-- > 0;)
+    for (size_t k = 3; k-- > 0;) mesh.position[mesh.triangle[t][k]] = moved.position[moved.triangle[t][k]];
+  compute_normals(mesh);
+}
+
 std::vector<KnittedFabric> knit_fabrics(const Scene& scene, const Loaders& loaders,
                                         const std::function<void(double)>& progress, const World* previous) {
   static std::atomic<uint64_t> knitted_so_far{0};
@@ -120,12 +149,31 @@ std::vector<KnittedFabric> knit_fabrics(const Scene& scene, const Loaders& loade
   std::vector<size_t> numbers;  // to be knitted
   for (size_t i = 0; i < count; ++i) {
     const FabricScene& fabric = scene.fabrics[i];
-    const KnitOrder order{fabric.mesh, fabric.transform, fabric.pattern, resolved(scene, fabric), obstacle};
+    KnitOrder order{fabric.mesh, fabric.transform, fabric.pattern, resolved(scene, fabric), obstacle};
+    std::optional<MeshPlace> place;
+    if (follows_mesh(fabric)) {
+      place = MeshPlace{fabric.mesh.frame, fabric.transform.rotate, fabric.transform.translate};
+      order.mesh.frame = 0;
+      order.transform.rotate = order.transform.translate = {0, 0, 0};
+      order.spec.storage = Storage::stored;
+    }
     out[i].yarn_colors = yarn_colors(fabric, patterns[i]);
     out[i].of_previous = find_same(previous, order, out);
+    // Meshes are read one after the other: their readers keep a state.
+    if (place && !(out[i].of_previous && previous->knittings[*out[i].of_previous].place == place)) {
+      out[i].moved = load_mesh(fabric.mesh, loaders, &out[i].frame_notes);
+      transform_mesh(out[i].moved, fabric.transform);
+      refuse_if_out_of_reach(out[i].moved, fabric.spec.name);
+    }
+    out[i].knitting = {order, 0, {}, place};
     if (out[i].of_previous) continue;
-    out[i].knitting = {order, ++knitted_so_far, {}};
-    meshes[i] = load_mesh(fabric.mesh, loaders);  // one after the other: readers of meshes keep a state
+    out[i].knitting.number = ++knitted_so_far;
+    if (place) {
+      meshes[i] = load_rest_mesh(fabric.mesh, loaders);
+    } else {
+      meshes[i] = load_mesh(fabric.mesh, loaders, &out[i].frame_notes);
+      meshes[i].rest = rest_of(fabric, loaders);
+    }
     numbers.push_back(i);
   }
   std::vector<std::exception_ptr> failed(count);

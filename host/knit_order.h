@@ -17,6 +17,15 @@ struct KnitOrder {
   bool operator==(const KnitOrder&) const = default;
 };
 
+/// Where the mesh of a fabric is that follows it without being knitted again. Its order then is of the mesh at rest, to
+/// its scale, neither turned nor moved.
+struct MeshPlace {
+  double frame = 0;
+  dvec3 rotate{0, 0, 0}, translate{0, 0, 0};
+
+  bool operator==(const MeshPlace&) const = default;
+};
+
 /// True where `made`, knitted to the order `before`, is what `wanted` would knit.
 bool serves(const KnitOrder& before, const Fabric& made, const KnitOrder& wanted);
 

@@ -56,6 +56,7 @@ Redone LiveScene::apply(const Scene& scene, const BuildProgress& progress) {
     redone.knitted += std::none_of(world_.knittings.begin(), world_.knittings.end(), same);
   }
   redone.fabrics = !uploaded.front()->shares_fabrics();
+  redone.moved = uploaded.front()->moved_fabrics();
   redone.device_seconds = since(start);
   scene_ = scene;
   world_ = std::move(next);

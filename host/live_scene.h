@@ -14,6 +14,7 @@ namespace wale {
 struct Redone {
   size_t knitted = 0;         ///< fabrics that were knitted
   bool fabrics = false;       ///< fabrics went to the devices: warp, leaves, tree
+  bool moved = false;         ///< fabrics on the devices followed their meshes: warp and refit
   double host_seconds = 0;    ///< knitting, and tables of materials, lights and colours
   double device_seconds = 0;  ///< wall time of all devices together
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geom/fabric.h"
+#include "geom/mesh_sequence.h"
 
 namespace wale {
 
@@ -20,12 +21,14 @@ struct Transform {
   bool operator==(const Transform&) const = default;
 };
 
-/// A mesh: a file, or one of the bundled generators with its sizes (metres).
+/// A mesh: a file, a sequence that moves, or one of the bundled generators with its sizes (metres).
 struct MeshSource {
   std::filesystem::path file;  ///< absolute; empty when generated
   std::string generator;       ///< swatch, tube, pillow, beanie, sock, draped_square
   double width = 0, height = 0, radius = 0, thickness = 0, length = 0, size = 0, sphere_radius = 0;
   int nu = 0, nv = 0;
+  std::optional<SequenceSource> sequence;
+  double frame = 0;  ///< of the sequence
 
   bool operator==(const MeshSource&) const = default;
 };
@@ -127,6 +130,7 @@ struct FabricScene {
   int material = 0;  ///< index into Scene::materials, a ply material
   ColorImage color_image;
   std::optional<std::vector<Rgb>> palette;  ///< of the tile's yarns, in place of the tile's own; empty: the material's
+  bool moves = false;  ///< its mesh is a sequence, or something of it has key frames
 
   bool operator==(const FabricScene&) const = default;
 };
@@ -205,6 +209,17 @@ struct IntegratorScene {
   bool operator==(const IntegratorScene&) const = default;
 };
 
+/// Time. The rest of a Scene is what it is at `frame`.
+struct AnimationScene {
+  double frame = 0;       ///< shown; not whole: between two
+  double fps = 24;        ///< of a video
+  double shutter = 0;     ///< frames that it stays open from `frame` on; 0 = no motion blur
+  int shutter_steps = 8;  ///< moments that the samples of a blurred frame are shared out to
+  bool moves = false;     ///< something differs from frame to frame
+
+  bool operator==(const AnimationScene&) const = default;
+};
+
 /// A whole scene in SI units (metres, radians), colours linear. Materials are referred to by index.
 struct Scene {
   std::string file;
@@ -212,6 +227,7 @@ struct Scene {
   CameraScene camera;
   FilmScene film;
   IntegratorScene integrator;
+  AnimationScene animation;
   std::vector<MaterialSpec> materials;
   std::vector<FabricScene> fabrics;
   std::vector<ObjectScene> objects;

@@ -54,6 +54,13 @@ SceneDevice::Surfaces::Surfaces(const Device& device, const std::vector<float>& 
   }
 }
 
+std::vector<MeshPlace> places_of(const World& world) {
+  std::vector<MeshPlace> places;
+  for (const Knitting& knitting : world.knittings)
+    if (knitting.place) places.push_back(*knitting.place);
+  return places;
+}
+
 SceneDevice::FabricKey SceneDevice::fabric_key(const World& world) {
   FabricKey key{{}, world.origin, world.local_stage, world.leaf_form};
   const std::vector<FabricInput> inputs = fabric_inputs(world);
@@ -65,13 +72,27 @@ SceneDevice::FabricKey SceneDevice::fabric_key(const World& world) {
 SceneDevice::SceneDevice(const Device& device, const World& world, const SceneDevice* previous,
                          const SceneDeviceOptions& options)
     : device_(device), simt_(quantised_tree(device.traits(), world.local_stage)), key_(fabric_key(world)) {
-  shares_fabrics_ = previous && previous->key_ == key_;
-  if (shares_fabrics_) {
-    fabric_ = previous->fabric_;
+  shares_fabrics_ = previous && previous->key_ == key_ && previous->fabrics_->somewhere;
+  const std::vector<MeshPlace> places = places_of(world);
+  const std::vector<FabricInput> inputs = fabric_inputs(world);
+  const bool lattice =
+      std::any_of(inputs.begin(), inputs.end(), [](const auto& i) { return !i.fabric->lattice.empty(); });
+  const bool updatable = options.updatable || (!places.empty() && !lattice && world.local_stage == LocalStage::exact);
+  if (shares_fabrics_ && previous->fabrics_->places != places) shares_fabrics_ = previous->fabric().warp != nullptr;
+  const DriverCall guard;
+  if (!shares_fabrics_) {
+    fabrics_ = std::make_shared<Fabrics>(
+        Fabrics{upload_fabrics(device, inputs, world.origin, world.local_stage, updatable, world.leaf_form), places});
   } else {
-    const DriverCall guard;
-    fabric_ = std::make_shared<FabricDevice>(upload_fabrics(device, fabric_inputs(world), world.origin,
-                                                            world.local_stage, options.updatable, world.leaf_form));
+    fabrics_ = previous->fabrics_;
+    moved_fabrics_ = fabrics_->places != places;
+  }
+  if (moved_fabrics_) {
+    const MeshVertices mesh = mesh_vertices(inputs, world.origin);
+    fabrics_->somewhere = false;
+    update_fabrics(device, fabrics_->device, mesh.positions, mesh.normals);
+    fabrics_->places = places;
+    fabrics_->somewhere = true;
   }
   if (previous && previous->simt_ == simt_ && previous->surfaces_->words == world.triangles)
     surfaces_ = previous->surfaces_;
@@ -101,10 +122,10 @@ SceneDevice::SceneDevice(const Device& device, const World& world, const SceneDe
 
 cl_uint SceneDevice::bind_scene(cl::Kernel& kernel, cl_uint first, bool procedural) const {
   cl_uint i = first;
-  kernel.setArg(i++, fabric_->tree.ray_nodes().cl());
-  kernel.setArg(i++, fabric_->tree.node_cell.cl());
-  kernel.setArg(i++, fabric_->tree.leaves.parts().front().words.cl());
-  kernel.setArg(i++, fabric_->tree.root);
+  kernel.setArg(i++, fabric().tree.ray_nodes().cl());
+  kernel.setArg(i++, fabric().tree.node_cell.cl());
+  kernel.setArg(i++, fabric().tree.leaves.parts().front().words.cl());
+  kernel.setArg(i++, fabric().tree.root);
   kernel.setArg(i++, surfaces_->root);
   kernel.setArg(i++, simt_ ? surfaces_->quantised.nodes().cl() : surfaces_->nodes.cl());
   kernel.setArg(i++, surfaces_->leaves.cl());
@@ -112,25 +133,25 @@ cl_uint SceneDevice::bind_scene(cl::Kernel& kernel, cl_uint first, bool procedur
   kernel.setArg(i++, sphere_count_);
   kernel.setArg(i++, events_.cl());
   if (simt_) {
-    kernel.setArg(i++, fabric_->tree.quantised.leaf_boxes().cl());
+    kernel.setArg(i++, fabric().tree.quantised.leaf_boxes().cl());
     kernel.setArg(i++, surfaces_->quantised.leaf_boxes().cl());
   }
-  if (fabric_->tree.leaves.split()) i = fabric_->tree.leaves.bind_others(kernel, i);
+  if (fabric().tree.leaves.split()) i = fabric().tree.leaves.bind_others(kernel, i);
   if (procedural) {
-    kernel.setArg(i++, fabric_->lattice.lattice.cl());
-    kernel.setArg(i++, fabric_->lattice.tiles.cl());
-    kernel.setArg(i++, fabric_->lattice.patch_bits);
+    kernel.setArg(i++, fabric().lattice.lattice.cl());
+    kernel.setArg(i++, fabric().lattice.tiles.cl());
+    kernel.setArg(i++, fabric().lattice.patch_bits);
   }
   if (key_.stage != LocalStage::exact) {
-    kernel.setArg(i++, fabric_->base_positions.cl());
-    kernel.setArg(i++, fabric_->base_indices.cl());
-    kernel.setArg(i++, fabric_->base_uv.cl());
-    kernel.setArg(i++, fabric_->cell_triangle_offsets.cl());
-    kernel.setArg(i++, fabric_->cell_triangles.cl());
-    kernel.setArg(i++, fabric_->cell_segment_offsets.cl());
-    kernel.setArg(i++, fabric_->cell_segments.cl());
-    kernel.setArg(i++, fabric_->grids.cl());
-    kernel.setArg(i++, fabric_->grid_of_cell.cl());
+    kernel.setArg(i++, fabric().base_positions.cl());
+    kernel.setArg(i++, fabric().base_indices.cl());
+    kernel.setArg(i++, fabric().base_uv.cl());
+    kernel.setArg(i++, fabric().cell_triangle_offsets.cl());
+    kernel.setArg(i++, fabric().cell_triangles.cl());
+    kernel.setArg(i++, fabric().cell_segment_offsets.cl());
+    kernel.setArg(i++, fabric().cell_segments.cl());
+    kernel.setArg(i++, fabric().grids.cl());
+    kernel.setArg(i++, fabric().grid_of_cell.cl());
   }
   return i;
 }
@@ -155,11 +176,11 @@ cl_uint SceneDevice::bind_ply_colors(cl::Kernel& kernel, cl_uint first) const {
 }
 
 std::map<std::string, uint64_t> SceneDevice::bytes() const {
-  const uint64_t frames = fabric_->frames.bytes(), leaves = fabric_->tree.leaves.bytes();
-  const uint64_t tree = fabric_->tree.tree_bytes();
+  const uint64_t frames = fabric().frames.bytes(), leaves = fabric().tree.leaves.bytes();
+  const uint64_t tree = fabric().tree.tree_bytes();
   return {{"ply vertices", frames},
           {"ply leaves", leaves},
-          {"lattices", fabric_->lattice.bytes()},
+          {"lattices", fabric().lattice.bytes()},
           {"ply tree", tree},
           {"triangles", surfaces_->triangles.bytes() + surfaces_->leaves.bytes() + surfaces_->nodes.bytes() +
                             surfaces_->quantised.bytes()},
@@ -168,7 +189,7 @@ std::map<std::string, uint64_t> SceneDevice::bytes() const {
           {"fibre detail", fibre_details_.bytes() + fibre_offsets_.bytes() + fibre_candidates_.bytes()},
           {"materials", ply_materials_.bytes() + fibre_materials_.bytes() + surface_materials_.bytes()},
           {"ply colours", ply_colors_.bytes()},
-          {"UV cells", fabric_->bytes - frames - leaves - tree}};
+          {"UV cells", fabric().bytes - frames - leaves - tree}};
 }
 
 }  // namespace wale

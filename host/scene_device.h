@@ -23,7 +23,7 @@ class SceneDevice {
   SceneDevice(const Device& device, const World& world, const SceneDevice* previous, const SceneDeviceOptions& options);
 
   /// Definitions for the kernels that follow from how the world lies on the device, beside those of its features.
-  std::string options() const { return fabric_->tree.leaves.split() ? " -DW_SPLIT_LEAVES" : ""; }
+  std::string options() const { return fabric().tree.leaves.split() ? " -DW_SPLIT_LEAVES" : ""; }
 
   /// Set the arguments of W_SCENE_PARAMS / W_LIGHT_PARAMS from `first` on; return the next free index. Kernels must be
   /// built for the same features and with options(); `procedural`: for procedural leaves, whether there are any or not.
@@ -32,7 +32,7 @@ class SceneDevice {
   /// W_COLOR_PARAMS of the stages that shade curves.
   cl_uint bind_ply_colors(cl::Kernel& kernel, cl_uint first) const;
 
-  const cl::Buffer& frames() const { return fabric_->frames.cl(); }
+  const cl::Buffer& frames() const { return fabric().frames.cl(); }
   const cl::Buffer& ply_materials() const { return ply_materials_.cl(); }
   const cl::Buffer& fibre_details() const { return fibre_details_.cl(); }
   const cl::Buffer& fibre_offsets() const { return fibre_offsets_.cl(); }
@@ -47,9 +47,11 @@ class SceneDevice {
 
   /// Some light may be sampled; false where all of them were dropped.
   bool samples_lights() const { return samples_lights_; }
-  const FabricDevice& fabric() const { return *fabric_; }
-  /// The fabrics are those of the earlier version.
+  const FabricDevice& fabric() const { return fabrics_->device; }
+  /// The fabrics are those of the earlier version; which then has them where this one has.
   bool shares_fabrics() const { return shares_fabrics_; }
+  /// And they were warped on to meshes that had moved.
+  bool moved_fabrics() const { return moved_fabrics_; }
   /// Bytes by buffer name, for `wale plan` and --stats.
   std::map<std::string, uint64_t> bytes() const;
 
@@ -73,8 +75,14 @@ class SceneDevice {
   static FabricKey fabric_key(const World& world);
 
   FabricKey key_;
-  bool shares_fabrics_ = false;
-  std::shared_ptr<FabricDevice> fabric_;
+  bool shares_fabrics_ = false, moved_fabrics_ = false;
+  /// Fabrics and where they are: versions that share them can move them.
+  struct Fabrics {
+    FabricDevice device;
+    std::vector<MeshPlace> places;  ///< of those that follow their mesh
+    bool somewhere = true;          ///< false after a failure in moving them
+  };
+  std::shared_ptr<Fabrics> fabrics_;
   Buffer<WPlyMaterial> ply_materials_;
   Buffer<WFibreDetail> fibre_details_;
   Buffer<uint32_t> fibre_offsets_;

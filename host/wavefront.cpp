@@ -72,20 +72,19 @@ void Wavefront::bind_intersect(const char* name) {
   scene_->bind_scene(kernel(name), bind_path(kernel(name), 1), features_.procedural);
 }
 
-std::string Wavefront::options() const { return features_.options() + scene_->options(); }
-
 void Wavefront::take_packets() {
-  if (!waiting_ || is_being_compiled(device_, waiting_->file, options(), kernel_dir_)) return;
-  const cl::Program program = build_program(device_, waiting_->file, options(), kernel_dir_);
+  if (!waiting_ || is_being_compiled(device_, waiting_->file, options_, kernel_dir_)) return;
+  const cl::Program program = build_program(device_, waiting_->file, options_, kernel_dir_);
   kernels_["intersect_packets"] = cl::Kernel(program, "intersect_packets");
   bind_intersect("intersect_packets");
   waiting_.reset();
 }
 
 void Wavefront::build_programs() {
+  options_ = features_.options() + scene_->options();
   auto programs = programs_of(wavefront_stages(features_), device_.traits().compiles_at_launch);
   const auto wait = std::find_if(programs.begin(), programs.end(), [&](const StageProgram& program) {
-    return program.can_wait && is_being_compiled(device_, program.file, options(), kernel_dir_);
+    return program.can_wait && is_being_compiled(device_, program.file, options_, kernel_dir_);
   });
   if (wait != programs.end()) {
     waiting_ = *wait;
@@ -99,7 +98,7 @@ void Wavefront::build_programs() {
   for (const auto& one : programs)
     builds.push_back(std::async(policy, [&, file = one.file] {
       const auto start = Clock::now();
-      cl::Program program = build_program(device_, file, options(), kernel_dir_);
+      cl::Program program = build_program(device_, file, options_, kernel_dir_);
       return std::pair(program, std::chrono::duration<double>(Clock::now() - start).count());
     }));
   for (size_t i = 0; i < programs.size(); ++i) {
@@ -112,18 +111,23 @@ void Wavefront::build_programs() {
 }
 
 bool Wavefront::serves(const SceneDevice& scene, const Features& features) const {
-  return features.options() + scene.options() == options();
+  return features.options() + scene.options() == options_;
 }
 
-void Wavefront::rebind(const SceneDevice& scene, const Features& features, const WCamera& camera) {
+void Wavefront::rebind(const SceneDevice& scene, const Features& features, const WCamera& camera, bool keep_film) {
   if (!serves(scene, features) || camera.width != camera_.width || camera.height != camera_.height)
     bug("wavefront: bound to a scene or a picture that it was not made for");
   harvest_events();
   scene_ = &scene;
   features_ = features;
   camera_ = camera;
-  film_.clear(device_);
+  if (!keep_film) film_.clear(device_);
   bind();
+}
+
+void Wavefront::leave_scene() {
+  const auto events = scene_->read_events();
+  for (size_t i = 0; i < counts_.events.size(); ++i) counts_.events[i] += events[i];
 }
 
 void Wavefront::bind() {

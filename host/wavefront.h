@@ -28,9 +28,11 @@ class Wavefront {
 
   uint32_t pool() const { return pool_; }
 
-  /// Goes on with another version of the scene, seen by another camera with as many pixels, and an empty film. The
-  /// programs stay: the version must be one that they serve (serves()).
-  void rebind(const SceneDevice& scene, const Features& features, const WCamera& camera);
+  /// Goes on with another version of the scene, seen by another camera with as many pixels, and an empty film unless
+  /// it is kept. The programs stay: the version must be one that they serve (serves()).
+  void rebind(const SceneDevice& scene, const Features& features, const WCamera& camera, bool keep_film = false);
+  /// Counts the rare events of its scene so far, which may go afterwards: before it is bound to another one.
+  void leave_scene();
   /// Programs built for `features` and a scene that lies like `scene` are those of this wavefront.
   bool serves(const SceneDevice& scene, const Features& features) const;
 
@@ -67,7 +69,7 @@ class Wavefront {
   void bind_intersect(const char* name);
   /// Packets are used from the first wave on that finds them compiled; they find the same hits.
   void take_packets();
-  std::string options() const;
+  std::string options_;  ///< that the programs were built with
   cl::Kernel& kernel(const std::string& name) { return kernels_.at(name); }
   void launch(const std::string& name, size_t items, bool camera_rays = false);
   bool in_packets(uint32_t depth) const { return depth == 0 && kernels_.contains("intersect_packets"); }

@@ -80,7 +80,7 @@ class Builder {
       const PlyAppearance& yarn = scene_.materials.at(size_t(fabric.material)).yarn;
       take(knitted[f]);
       Fabric& made = world_.fabrics.back();
-      bounds_.add(made.mesh), fabric_bounds_.add(made.mesh);
+      add_bounds(made, fabric.transform);
       world_.fabric_material.push_back(uint32_t(world_.ply_materials.size()));
       world_.ply_materials.push_back(ply_material(yarn));
       world_.fibres.add(fibre_recipe(yarn), made.ply_radius, fabric.spec.detail);
@@ -97,13 +97,29 @@ class Builder {
       world_.fabric_mesh_reports.push_back(previous_->fabric_mesh_reports[*from]);
       world_.knittings.push_back(previous_->knittings[*from]);
       std::swap(world_.fabrics.back(), previous_->fabrics[*from]);
+      if (!knitted.moved.triangle.empty()) world_.knittings.back().place = knitted.knitting.place;
     } else {
       world_.fabric_mesh_reports.push_back(knitted.mesh_report);
       world_.knittings.push_back(std::move(knitted.knitting));
       world_.fabrics.back() = std::move(knitted.fabric);
     }
-    const std::vector<std::string>& notes = world_.knittings.back().notes;
-    world_.notes.insert(world_.notes.end(), notes.begin(), notes.end());
+    if (!knitted.moved.triangle.empty()) follow_mesh(world_.fabrics.back(), knitted.moved);
+    for (const auto& notes : {world_.knittings.back().notes, knitted.frame_notes})
+      world_.notes.insert(world_.notes.end(), notes.begin(), notes.end());
+  }
+
+  // A cloth that moves counts as it is at rest: neither the ground nor a camera that nobody placed follows every fold.
+  void add_bounds(const Fabric& fabric, const Transform& transform) {
+    Bounds here;
+    here.add(fabric.mesh);
+    if (world_.knittings.back().place) {
+      moving_.add(here.centre());
+      BaseMesh rest = *fabric.mesh.rest;
+      transform_mesh(rest, {1, transform.rotate, transform.translate});
+      bounds_.add(rest), fabric_bounds_.add(rest);
+    } else {
+      bounds_.add(fabric.mesh), fabric_bounds_.add(fabric.mesh);
+    }
   }
 
   void color_plies(Fabric& fabric, const PlyAppearance& yarn, const ColorImage& image, const std::vector<Rgb>& yarns) {
@@ -183,7 +199,7 @@ class Builder {
         centre += up * (object.height - glm::dot(centre, up));
         add_quad(centre, u * object.extent, v * object.extent, material);
       } else {
-        BaseMesh mesh = load_mesh(object.mesh, loaders_);
+        BaseMesh mesh = load_mesh(object.mesh, loaders_, &world_.notes);
         transform_mesh(mesh, object.transform);
         refuse_if_out_of_reach(mesh, object.name);
         bounds_.add(mesh);
@@ -196,6 +212,12 @@ class Builder {
     world_.origin = !fabric_bounds_.empty() ? fabric_bounds_.centre()
                     : !bounds_.empty()      ? bounds_.centre()
                                             : scene_.camera.look_at;
+    if (!moving_.empty()) {
+      // Only an origin that stays lets a fabric be moved in place: that of a coarse grid near the cloth, which costs
+      // three bits of a float at most.
+      const double grid = std::exp2(std::ceil(std::log2(8 * fabric_bounds_.radius())));
+      world_.origin = grid * glm::round(moving_.centre() / grid);
+    }
   }
 
   void upload_triangle(const Triangle& t) {
@@ -277,7 +299,7 @@ class Builder {
   }
 
   void add_mesh_light(const LightScene& light, LightTableBuilder& tables) {
-    BaseMesh mesh = load_mesh(light.mesh, loaders_);
+    BaseMesh mesh = load_mesh(light.mesh, loaders_, &world_.notes);
     transform_mesh(mesh, light.transform);
     const int material = add_emitter(light.radiance, false);
     const size_t first = triangles_.size();
@@ -355,6 +377,7 @@ class Builder {
   bool done_ = false;
   World world_;
   Bounds bounds_, fabric_bounds_;
+  Bounds moving_;        ///< of the middles of fabrics that follow their mesh
   size_t vertices_ = 0;  ///< of the fabrics so far
   std::vector<Triangle> triangles_;
   std::vector<Sphere> spheres_;
@@ -365,7 +388,10 @@ class Builder {
 void give_back_fabrics(World& from, World& previous) {
   for (size_t i = 0; i < from.fabrics.size(); ++i)
     for (size_t k = 0; k < previous.fabrics.size(); ++k)
-      if (previous.knittings[k].number == from.knittings[i].number) std::swap(previous.fabrics[k], from.fabrics[i]);
+      if (previous.knittings[k].number == from.knittings[i].number) {
+        std::swap(previous.fabrics[k], from.fabrics[i]);
+        previous.knittings[k].place = from.knittings[i].place;  // its mesh has been moved
+      }
 }
 
 World build_world(const Scene& scene, const Loaders& loaders, const BuildProgress& progress,

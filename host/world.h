@@ -1,6 +1,8 @@
 #pragma once
 #include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,8 @@ namespace wale {
 struct Loaders {
   std::function<BaseMesh(const std::filesystem::path&)> mesh;
   std::function<Image(const std::filesystem::path&)> image;
+  /// Keeps sequences open from frame to frame; absent: they are opened for every frame.
+  std::function<std::shared_ptr<const MeshSequence>(const SequenceSource&)> sequence{};
 };
 
 /// An effect that a scene has and that is left out because it cannot matter (host/analysis.h).
@@ -32,6 +36,7 @@ struct Knitting {
   KnitOrder order;
   uint64_t number = 0;             ///< of this program's knittings, from 1 on: two fabrics with one number are the same
   std::vector<std::string> notes;  ///< what was mended or chosen, one line each
+  std::optional<MeshPlace> place;  ///< of a fabric that follows its mesh; absent: it was knitted where it is
 };
 
 /// A scene made concrete on the host: knitted fabrics, triangles, lights and materials, ready to be uploaded. Positions
@@ -85,8 +90,11 @@ World build_world(const Scene& scene, const Loaders& loaders, const BuildProgres
 /// Puts the fabrics that build_world() took from an earlier version back into it.
 void give_back_fabrics(World& from, World& previous);
 
-/// The mesh that a scene names, generated or read, before its transform.
-BaseMesh load_mesh(const MeshSource& source, const Loaders& loaders);
+/// The mesh that a scene names, generated or read, before its transform. Frames that are held add a line to `notes`.
+BaseMesh load_mesh(const MeshSource& source, const Loaders& loaders, std::vector<std::string>* notes = nullptr);
+
+/// The same at rest, if it is one of a sequence.
+BaseMesh load_rest_mesh(const MeshSource& source, const Loaders& loaders);
 
 /// Applies scale, rotation and translation; normals are recomputed.
 void transform_mesh(BaseMesh& mesh, const Transform& transform);
