@@ -1,0 +1,10 @@
+#pragma once
+#include "host/surface_set.h"
+
+namespace wale {
+
+/// Adds a scene's lights to a world whose origin is known: what they are made of to `surfaces`, the rest to the world.
+/// `radius`, metres: of everything that the environment lights.
+void add_lights(World& world, SurfaceSet& surfaces, const Scene& scene, const Loaders& loaders, double radius);
+
+}  // namespace wale
