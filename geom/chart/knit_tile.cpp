@@ -161,18 +161,37 @@ KnittedTile knit_once(const StitchChart& chart, const Knit& knit, const KnitSett
   return out;
 }
 
-// A stitch grows with its loop, nearly in proportion; where it jams the loop was too short.
+// Where a gauge may be reached, from loop lengths that were tried: between the nearest ones on both sides of it, else
+// on along the slope of the two nearest, else in proportion, as a stitch grows with its loop.
+double next_length(std::vector<dvec2> tried, double wanted) {  // (loop length, gauge)
+  constexpr double kFlattest = -0.15, kSteepest = -2, kFarthest = 0.5;
+  for (dvec2& t : tried) t = {std::log(t.x), std::log(t.y / wanted)};
+  std::sort(tried.begin(), tried.end(), [](const dvec2& a, const dvec2& b) { return std::abs(a.y) < std::abs(b.y); });
+  const dvec2 near = tried[0];
+  for (const dvec2& t : tried)
+    if (t.y * near.y < 0) return std::exp(near.x - near.y * (t.x - near.x) / (t.y - near.y));
+  const double slope = tried.size() > 1 ? (tried[1].y - near.y) / (tried[1].x - near.x) : -1;
+  return std::exp(near.x - std::clamp(near.y / std::clamp(slope, kSteepest, kFlattest), -kFarthest, kFarthest));
+}
+
+// Where a loop jams it was too short. That is found out in about as many steps as a sound tile takes, and not in all
+// that are allowed; from one start, as the search is for the loop's length.
 KnittedTile knit_to_gauge(const StitchChart& chart, const Knit& knit, const KnitSettings& settings,
                           const std::function<bool(double)>& progress) {
-  constexpr int kTries = 8;
-  const int axis = settings.wales ? 0 : 1;
-  const double wanted = settings.wales ? *settings.wales : *settings.courses;
-  double length = kPlainLoop, jams = 0;
-  std::optional<KnittedTile> best;
-  const auto miss = [&](const KnittedTile& tile) { return std::abs(tile.gauge[axis] / wanted - 1); };
+  constexpr int kTries = 10;
+  // Yarn that is stretched by more has been jammed into a shape that is not that of its loop length.
+  constexpr double kJammed = 0.03, kBracket = 1.02;
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(settings.max_seconds);
+  const int axis = settings.wales ? 0 : 1;
+  const double wanted = settings.wales ? *settings.wales : *settings.courses;
+  const auto sound = [](const KnittedTile& t) { return t.relaxed.converged && t.relaxed.strain <= kJammed; };
+  const auto miss = [&](const KnittedTile& tile) { return std::abs(tile.gauge[axis] / wanted - 1); };
+  double length = kPlainLoop, jams = 0;
+  std::vector<dvec2> tried;
+  std::optional<KnittedTile> best;
   KnitSettings rest = settings;
+  rest.starts = 1;
   int tries = 0;
   while (tries < kTries) {
     if (tries > 0) rest.max_seconds = std::chrono::duration<double>(end - Clock::now()).count();
@@ -184,21 +203,25 @@ KnittedTile knit_to_gauge(const StitchChart& chart, const Knit& knit, const Knit
       tile.tries = tries;
       return tile;
     }
-    double next = length * tile.gauge[axis] / wanted;
-    if (!tile.relaxed.converged) {
+    double next = 1.3 * length;
+    if (!sound(tile)) {
       jams = std::max(jams, length);
-      next = best ? 0.5 * (length + best->loop_length / settings.yarn_thickness) : 1.3 * length;
+      if (!tried.empty()) next = 0.5 * (length + best->loop_length / settings.yarn_thickness);
       if (!best) best = std::move(tile);
-    } else if (!best || !best->relaxed.converged || miss(tile) < miss(*best)) {
-      best = std::move(tile);
+    } else {
+      rest.max_steps = std::min(settings.max_steps, 2 * tile.relaxed.steps + 100);
+      tried.emplace_back(length, tile.gauge[axis]);
+      if (tried.size() == 1 || miss(tile) < miss(*best)) best = std::move(tile);
       if (miss(*best) <= kGaugeTolerance) break;
+      next = next_length(tried, wanted);
     }
     next = std::clamp(next, std::max(kShortest, jams), kLongest);
-    if (std::abs(next / length - 1) < 1e-4) break;
+    // Between a loop that jams and one that is nearly as short there is nothing left to find.
+    if (std::abs(next / length - 1) < 1e-4 || (!tried.empty() && next < kBracket * jams)) break;
     length = next;
   }
   best->tries = tries;
-  best->gauge_reached = miss(*best) <= kGaugeTolerance;
+  best->gauge_reached = sound(*best) && miss(*best) <= kGaugeTolerance;
   return std::move(*best);
 }
 
