@@ -65,7 +65,8 @@ TEST_F(CliKnit, AGaugeThatNoLoopGivesEndsSoon) {
   const auto start = std::chrono::steady_clock::now();
   for (const char* asked : {"--wales", "--courses"}) {
     const std::string line = knit_refused(chart("k\n"), {asked, "150", "--quiet"});
-    EXPECT_TRUE(contains(line, "no loop length gives this gauge; the nearest is 2")) << line;
+    EXPECT_TRUE(contains(line, "no loop length gives this gauge; the nearest is 26.")) << line;
+    EXPECT_TRUE(contains(line, "--loop 12.")) << line << ": shorter ones fit only where the yarn stretches";
   }
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 10) << "0.5 s idle";
 }
