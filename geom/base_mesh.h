@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,8 @@ struct BaseMesh {
   std::vector<std::array<uint32_t, 3>> triangle;  ///< vertex indices
   std::vector<std::array<dvec2, 3>> uv;           ///< per triangle corner; empty when the file carries none
   size_t polygons_split = 0;                      ///< faces of more than three corners that were fanned
+  /// The cloth at rest, whose charts give those of this mesh their scale; null: this mesh itself.
+  std::shared_ptr<const BaseMesh> rest{};
 };
 
 /// What validation found; nothing here is fatal.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "geom/error.h"
 #include "geom/groups.h"
 #include "geom/mesh_edges.h"
 
@@ -68,6 +69,30 @@ void measure(const BaseMesh& mesh, Chart& chart) {
   chart.mirrored = signed_area < 0;
 }
 
+/// The scale of the chart at rest that lies in the same place, by the share that their boxes have in common.
+void take_scale(std::vector<Chart>& charts, const std::vector<Chart>& rest, const std::string& name) {
+  const auto area = [](dvec2 lo, dvec2 hi) {
+    const dvec2 size = glm::max(hi - lo, dvec2(0));
+    return size.x * size.y;
+  };
+  for (Chart& chart : charts) {
+    if (!(area(chart.uv_min, chart.uv_max) > 0)) continue;
+    const Chart* best = nullptr;
+    double best_share = 0.5;
+    for (const Chart& other : rest) {
+      const double common = area(glm::max(chart.uv_min, other.uv_min), glm::min(chart.uv_max, other.uv_max));
+      const double share = common / (area(chart.uv_min, chart.uv_max) + area(other.uv_min, other.uv_max) - common);
+      if (share > best_share) best_share = share, best = &other;
+    }
+    if (!best)
+      user_error(
+          "{}: its chart of UV ({:.3g}, {:.3g}) to ({:.3g}, {:.3g}) is not in the rest frame; UV must be those of the "
+          "same cloth in every frame",
+          name, chart.uv_min.x, chart.uv_min.y, chart.uv_max.x, chart.uv_max.y);
+    chart.metres_per_uv = best->metres_per_uv;
+  }
+}
+
 }  // namespace
 
 std::vector<Chart> find_charts(const BaseMesh& mesh) {
@@ -93,6 +118,7 @@ std::vector<Chart> find_charts(const BaseMesh& mesh) {
     charts[chart_of[t]].triangles.push_back(t);
   }
   for (Chart& chart : charts) measure(mesh, chart);
+  if (mesh.rest) take_scale(charts, find_charts(*mesh.rest), mesh.name);
 
   std::vector<std::vector<SeamShift>> shifts(charts.size());
   std::vector<double> seam_length(charts.size(), 0.0);

@@ -6,6 +6,7 @@
 
 #include "geom/error.h"
 #include "host/atomic_file.h"
+#include "host/command_frames.h"
 #include "host/commands.h"
 #include "host/image_coder.h"
 #include "host/memory_needs.h"
@@ -21,18 +22,6 @@
 namespace wale {
 namespace {
 
-// Samples per pixel at most: a goal decides itself where to stop.
-int most_samples(const RenderArgs& args, const IntegratorScene& integrator) {
-  constexpr int kTowardsError = 65536, kTowardsTime = 1 << 20;
-  if (args.error > 0 && args.spp > 0 && args.spp < int(kScrambles))
-    user_error(
-        "--error {:g} with --spp {}: noise is measured between {} samples and more of a pixel; valid: --spp {} or "
-        "more, or none",
-        args.error, args.spp, kScrambles, kScrambles);
-  if (args.spp > 0) return args.spp;
-  return args.error > 0 ? kTowardsError : args.seconds > 0 ? kTowardsTime : integrator.spp;
-}
-
 // The devices of a render and the scene on each of them.
 class Devices {
  public:
@@ -47,11 +36,10 @@ class Devices {
       const Features features = features_of(traits, world, integrator, options);
       require_memory(device, memory_needs(world, features, pool_of(traits, integrator, options), traits));
     }
-    const LocalStage stage = local_stage(integrator);
     std::vector<std::future<std::unique_ptr<SceneDevice>>> scenes;
     for (const Device& device : open_)
       scenes.push_back(std::async(open_.size() > 1 ? std::launch::async : std::launch::deferred, [&] {
-        return std::make_unique<SceneDevice>(device, world, stage, leaf_form(integrator));
+        return std::make_unique<SceneDevice>(device, world);
       }));
     for (auto& scene : scenes) scenes_.push_back(scene.get());
     for (size_t d = 0; d < open_.size(); ++d) list_.push_back({&open_[d], scenes_[d].get()});
@@ -141,9 +129,23 @@ Stats stats_of(const Scene& scene, const World& world, const std::vector<RenderD
 
 }  // namespace
 
+int most_samples(const RenderArgs& args, const IntegratorScene& integrator) {
+  constexpr int kTowardsError = 65536, kTowardsTime = 1 << 20;
+  if (args.error > 0 && args.spp > 0 && args.spp < int(kScrambles))
+    user_error(
+        "--error {:g} with --spp {}: noise is measured between {} samples and more of a pixel; valid: --spp {} or "
+        "more, or none",
+        args.error, args.spp, kScrambles, kScrambles);
+  if (args.spp > 0) return args.spp;
+  return args.error > 0 ? kTowardsError : args.seconds > 0 ? kTowardsTime : integrator.spp;
+}
+
 int run_render(const RenderArgs& args, const Loaders& loaders) {
   Start start;
   Scene scene = read_scene(args);
+  if (!args.frames.empty() || scene.animation.shutter > 0) return run_frames(args, loaders);
+  if (args.redo || !args.video.empty())
+    user_error("--{}: of an animation; give --frames too, for example --frames 0..47", args.redo ? "redo" : "video");
   if (!args.size.empty()) apply_size(args.size, scene.film);
   // Everything that can be refused is refused before the long work starts.
   const int spp = most_samples(args, scene.integrator);

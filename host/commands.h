@@ -26,6 +26,9 @@ struct RenderArgs : SceneArgs {
   double error = 0, seconds = 0;  ///< goals; 0: not set
   std::string size;
   std::filesystem::path stats;
+  std::string frames;           ///< as frame_range() reads it; empty: the one that the scene shows
+  bool redo = false;            ///< frames of other settings are written over
+  std::filesystem::path video;  ///< empty: none
 };
 
 struct KnitArgs {
@@ -38,6 +41,9 @@ struct KnitArgs {
 
 /// Puts "WIDTHxHEIGHT" into the film's size; throws a user error for anything else.
 void apply_size(const std::string& size, FilmScene& film);
+
+/// Samples per pixel at most: a goal decides itself where to stop.
+int most_samples(const RenderArgs& args, const IntegratorScene& integrator);
 
 /// Those of the preset, then those of --set.
 std::vector<std::string> overrides_of(const SceneArgs& args);

@@ -118,4 +118,20 @@ void require_plausible_exr(std::string_view bytes, const std::string& file) {
   } while (multipart && at < bytes.size() && bytes[at] != '\0');
 }
 
+std::optional<std::string> exr_text(std::string_view bytes, std::string_view name) {
+  if (!bytes.starts_with("v/1\x01")) return {};
+  for (size_t at = kPrologue; at < bytes.size();) {
+    const size_t name_end = bytes.find('\0', at);
+    if (name_end == at || name_end == std::string_view::npos) return {};
+    const size_t type_end = bytes.find('\0', name_end + 1);
+    if (type_end == std::string_view::npos || bytes.size() - type_end < 5) return {};
+    const size_t size = unsigned_at(bytes, type_end + 1), value = type_end + 5;
+    if (size > bytes.size() - value) return {};
+    if (bytes.substr(at, name_end - at) == name && bytes.substr(name_end + 1, type_end - name_end - 1) == "string")
+      return std::string(bytes.substr(value, size));
+    at = value + size;
+  }
+  return {};
+}
+
 }  // namespace wale

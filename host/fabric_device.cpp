@@ -93,8 +93,12 @@ void append(CellLists& out, const Fabric& fabric, size_t cells, uint32_t first_c
 void update_fabrics(const Device& device, FabricDevice& fabrics, std::span<const float> positions,
                     std::span<const float> normals) {
   if (!fabrics.warp) bug("fabrics: not uploaded to be updatable");
+  const double start = now();
   fabrics.warp->move(device, positions, normals);
+  device.queue().finish();
+  fabrics.move_seconds = now() - start;
   refit(device, fabrics.tree);
+  fabrics.refit_seconds = now() - start - fabrics.move_seconds;
 }
 
 Box clipped_triangle_box(const BaseMesh& mesh, uint32_t triangle, dvec2 cell_lo, dvec2 cell_hi, dvec3 origin) {

@@ -6,13 +6,11 @@
 
 #include "host/fabric_warp.h"
 #include "host/lattice_fabrics.h"
+#include "host/local_stage.h"
 #include "host/ply_tree.h"
 #include "shared/wale_types.h"
 
 namespace wale {
-
-/// How the plies that a ray meets are found: W_LOCAL_STAGE of the kernels.
-enum class LocalStage { exact = 0, cell = 1, ring = 2 };
 
 /// All fabrics of a scene on the device, warped, packed and with their tree. Vertices, cells, triangles and grids of
 /// the fabrics are numbered one fabric after the other; fabric f's vertices start at first_vertex[f].
@@ -33,6 +31,7 @@ struct FabricDevice {
   size_t vertex_count = 0, segment_count = 0, patch_count = 0, cell_count = 0, triangle_count = 0, node_count = 0;
   size_t bytes = 0;  ///< that stay on the device
   double warp_seconds = 0, pack_seconds = 0, build_seconds = 0;
+  double move_seconds = 0, refit_seconds = 0;  ///< of the last update: warp; leaves and nodes
 };
 
 /// Warps, packs and uploads. `origin` is subtracted from base positions in double. `updatable`: keep what

@@ -12,21 +12,17 @@ namespace {
 
 // What the warp reads, of all fabrics.
 struct WarpInput {
-  size_t vertices = 0;
-  std::vector<float> positions, normals, cloth;
+  size_t vertices = 0, points = 0;
+  std::vector<float> cloth;
   std::vector<uint32_t> triangles;
   std::vector<uint8_t> flags;
 };
 
-void append(WarpInput& out, const Fabric& fabric, dvec3 origin) {
-  const uint32_t first_point = uint32_t(out.positions.size() / 3);
+void append(WarpInput& out, const Fabric& fabric) {
+  const uint32_t first_point = uint32_t(out.points);
+  out.points += fabric.mesh.position.size();
   const size_t first_vertex = out.vertices;
   out.vertices += fabric.anchors.size();
-  for (size_t i = 0; i < fabric.mesh.position.size(); ++i)
-    for (int k = 0; k < 3; ++k) {
-      out.positions.push_back(float(fabric.mesh.position[i][k] - origin[k]));
-      out.normals.push_back(float(fabric.mesh.normal[i][k]));
-    }
   for (size_t t = 0; t < fabric.mesh.triangle.size(); ++t) {
     const uint32_t chart = t < fabric.chart_of_triangle.size() ? fabric.chart_of_triangle[t] : W_NONE;
     const dvec2 per_metre = chart < fabric.uv_per_metre.size() ? fabric.uv_per_metre[chart] : dvec2(1);
@@ -73,20 +69,35 @@ void write_anchors(const Device& device, std::span<const FabricInput> inputs, co
 
 }  // namespace
 
+MeshVertices mesh_vertices(std::span<const FabricInput> inputs, dvec3 origin) {
+  MeshVertices out;
+  for (const FabricInput& input : inputs) {
+    if (!input.fabric->lattice.empty()) continue;
+    const BaseMesh& mesh = input.fabric->mesh;
+    for (size_t i = 0; i < mesh.position.size(); ++i)
+      for (int k = 0; k < 3; ++k) {
+        out.positions.push_back(float(mesh.position[i][k] - origin[k]));
+        out.normals.push_back(float(mesh.normal[i][k]));
+      }
+  }
+  return out;
+}
+
 FabricWarp::FabricWarp(const Device& device, std::span<const FabricInput> inputs, dvec3 origin, size_t more) {
   WarpInput in;
   for (const FabricInput& input : inputs)
-    if (input.fabric->lattice.empty()) append(in, *input.fabric, origin);
+    if (input.fabric->lattice.empty()) append(in, *input.fabric);
+  const MeshVertices mesh = mesh_vertices(inputs, origin);
   count_ = uint32_t(in.vertices);
   points_ = Buffer<float>(device, (count_ + more) * 3);
   frames_ = Buffer<float>(device, (count_ + more) * W_FRAME_WORDS);
   ask_for_large_pages(device, frames_.cl());
-  positions_ = Buffer<float>(device, in.positions);
+  positions_ = Buffer<float>(device, mesh.positions);
   triangles_ = Buffer<uint32_t>(device, in.triangles);
   if (count_ == 0) return;
   anchors_ = Buffer<WAnchor>(device, count_);
   write_anchors(device, inputs, anchors_);
-  normals_ = Buffer<float>(device, in.normals);
+  normals_ = Buffer<float>(device, mesh.normals);
   cloth_ = Buffer<float>(device, in.cloth);
   flags_ = Buffer<uint8_t>(device, in.flags);
   const cl::Program program = build_program(device, "warp.cl");

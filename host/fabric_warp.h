@@ -17,6 +17,12 @@ struct FabricInput {
   uint32_t fibre_material = 0;  ///< of its explicit fibres, which are opaque
 };
 
+/// Vertices of base meshes, one fabric after the other, without those of lattices: x, y, z each, metres from the origin.
+struct MeshVertices {
+  std::vector<float> positions, normals;
+};
+MeshVertices mesh_vertices(std::span<const FabricInput> inputs, dvec3 origin);
+
 /// The flat knits of a scene's fabrics carried on to their base meshes by the device (kernels/warp.cl). Vertices, mesh
 /// vertices and triangles are numbered one fabric after the other. Nothing in it is needed once the tree is built,
 /// unless the base meshes move.

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -33,6 +34,15 @@ void write_image(const Image& image, const std::filesystem::path& file, double e
 
 /// True when write_image could write there; checked before rendering starts.
 void require_writable(const std::filesystem::path& file);
+
+/// The picture as 8-bit RGB, row after row, sRGB encoded.
+std::vector<unsigned char> display_bytes(const Image& image, double exposure, const std::string& view);
+
+/// A text in the header of an .exr or .png that write_image wrote; nothing where the file is neither, or without it.
+std::optional<std::string> image_text(const std::filesystem::path& file, const std::string& name);
+
+/// The text that a frame of an animation carries in either.
+constexpr const char* kFrameAttribute = "wale:frame";
 
 /// One scene-linear colour to display values in [0,1]: exposure, tone curve, sRGB encoding.
 void view_transform(const float linear[3], double exposure, const std::string& view, float display[3]);

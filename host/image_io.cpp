@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/byte_source.h"
 #include "geom/error.h"
 #include "geom/text_lines.h"
 #include "host/atomic_file.h"
@@ -72,6 +73,25 @@ void decode_srgb(Image& image, int alpha) {
   }
 }
 
+// The PNG is made in memory: OpenImageIO's writer does not notice a full disk.
+std::string png_file(const Image& image, double exposure, const std::string& view) {
+  std::string png;
+  const std::string failure =
+      image_coder().encode_png(display_bytes(image, exposure, view), image.width, image.height, png);
+  if (!failure.empty()) bug("PNG: {}", one_line(failure));
+  if (const auto frame = image.attributes.find(kFrameAttribute); frame != image.attributes.end())
+    add_png_text(png, frame->first, frame->second);
+  return png;
+}
+
+void write_exr(const Image& image, const std::filesystem::path& file) {
+  AtomicFile out(file);
+  require_coded(image_coder().write_exr(image, out.temporary().string()), file.string() + ": cannot be written");
+  out.commit();
+}
+
+}  // namespace
+
 std::vector<unsigned char> display_bytes(const Image& image, double exposure, const std::string& view) {
   int rgb[3] = {0, 0, 0};
   for (int c = 0; c < 3; ++c) {
@@ -92,23 +112,6 @@ std::vector<unsigned char> display_bytes(const Image& image, double exposure, co
     }
   return bytes;
 }
-
-// The PNG is made in memory: OpenImageIO's writer does not notice a full disk.
-std::string png_file(const Image& image, double exposure, const std::string& view) {
-  std::string png;
-  const std::string failure =
-      image_coder().encode_png(display_bytes(image, exposure, view), image.width, image.height, png);
-  if (!failure.empty()) bug("PNG: {}", one_line(failure));
-  return png;
-}
-
-void write_exr(const Image& image, const std::filesystem::path& file) {
-  AtomicFile out(file);
-  require_coded(image_coder().write_exr(image, out.temporary().string()), file.string() + ": cannot be written");
-  out.commit();
-}
-
-}  // namespace
 
 Image read_image(const std::filesystem::path& file, bool finite) {
   std::error_code ignored;
@@ -152,6 +155,16 @@ void write_image(const Image& image, const std::filesystem::path& file, double e
     write_text_file(file, png_file(image, exposure, view));
   else
     write_exr(image, file);
+}
+
+std::optional<std::string> image_text(const std::filesystem::path& file, const std::string& name) {
+  constexpr uint64_t kHead = 1 << 16;  // of ours, far less
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(file, failed)) return {};
+  const ByteSource source = ByteSource::of_file(file);
+  std::string head(std::min(source.size(), kHead), '\0');
+  source.read(0, head.data(), head.size());
+  return suffix_of(file) == ".png" ? png_text(head, name) : exr_text(head, name);
 }
 
 void require_writable(const std::filesystem::path& file) {

@@ -7,7 +7,21 @@
 
 namespace wale {
 
-BaseMesh load_mesh(const MeshSource& s, const Loaders& loaders) {
+namespace {
+
+std::shared_ptr<const MeshSequence> open_sequence(const SequenceSource& source, const Loaders& loaders) {
+  if (loaders.sequence) return loaders.sequence(source);
+  return std::make_shared<MeshSequence>(source, loaders.mesh);
+}
+
+}  // namespace
+
+BaseMesh load_rest_mesh(const MeshSource& s, const Loaders& loaders) {
+  return s.sequence ? open_sequence(*s.sequence, loaders)->rest() : load_mesh(s, loaders);
+}
+
+BaseMesh load_mesh(const MeshSource& s, const Loaders& loaders, std::vector<std::string>* notes) {
+  if (s.sequence) return open_sequence(*s.sequence, loaders)->at(s.frame, notes);
   if (!s.file.empty()) return loaders.mesh(s.file);
   if (s.generator == "swatch") return make_swatch(s.width, s.height, s.nu, s.nv);
   if (s.generator == "tube") return make_tube(s.radius, s.height, s.nu, s.nv);

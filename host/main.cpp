@@ -134,6 +134,10 @@ int run(int argc, char** argv) {
   c->add_option("--seconds", render.seconds, "stop after this many seconds of rendering")->check(finite_number(false));
   c->add_option("--size", render.size, "WIDTHxHEIGHT");
   c->add_option("--stats", render.stats, "write what was done as JSON");
+  c->add_option("--frames", render.frames,
+                "frames of an animation: 7, 0..47 or 0..47:2; # in an output is a digit of the number");
+  c->add_flag("--redo", render.redo, "write over frames of another scene or other settings");
+  c->add_option("--video", render.video, "join the frames to a video (needs ffmpeg)");
   c->callback([&] { status = wale::run_render(render, loaders); });
 
   SceneArgs scene;

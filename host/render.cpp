@@ -4,6 +4,7 @@
 #include <chrono>
 #include <ctime>
 #include <future>
+#include <numeric>
 
 #include "geom/error.h"
 #include "host/device_fault.h"
@@ -75,19 +76,23 @@ class Job {
     for (const auto& wave : waves_) pool = std::min(pool, wave->pool());
     block_pixels_ = options.error > 0 ? kTilePixels : block_size(pool, pixels_, devices.size());
     const uint32_t blocks = (pixels_ + block_pixels_ - 1) / block_pixels_;
-    list_ = std::make_unique<WorkList>(blocks, options.error > 0 ? 0 : uint32_t(options.spp), uint32_t(devices.size()),
+    const bool in_passes = options.error > 0 || options.moments > 1;
+    list_ = std::make_unique<WorkList>(blocks, in_passes ? 0 : uint32_t(options.spp), uint32_t(devices.size()),
                                        options.seconds > 0);
+    if (options.moments > 1) expected_ = double(blocks) * options.spp;
     std::vector<const FilmDevice*> films;
     for (const auto& wave : waves_) films.push_back(&wave->film());
     film_ = std::make_unique<SharedFilm>(std::move(films), *list_, pixels_, block_pixels_);
   }
 
-  Rendered run(const World& world) {
+  Rendered run(const World& world, const IntegratorScene& integrator) {
     if (options_.ready) options_.ready();
     start_ = Clock::now();
     const std::clock_t cpu = std::clock();
     if (options_.error > 0)
       work_towards_goal();
+    else if (options_.moments > 1)
+      work_on_moments(integrator);
     else
       work_on_all();
     result_.seconds = since(start_);
@@ -157,6 +162,38 @@ class Job {
     });
   }
 
+  // A run of every pixel's samples at each moment: runs of the sequence that the samples are of are even in themselves.
+  void work_on_moments(const IntegratorScene& integrator) {
+    if (options_.error > 0 || options_.seconds > 0) bug("render: a goal would not reach every moment");
+    std::vector<uint32_t> blocks((pixels_ + block_pixels_ - 1) / block_pixels_);
+    std::iota(blocks.begin(), blocks.end(), 0u);
+    const uint64_t spp = uint64_t(options_.spp), moments = std::min<uint64_t>(options_.moments, spp);
+    for (uint64_t k = 0; k < moments; ++k) {
+      if (k > 0) {
+        for (const auto& wave : waves_) wave->leave_scene();
+        const Moment moment = options_.at_moment(uint32_t(k));
+        if (moment.devices.size() != waves_.size()) bug("render: a moment on other devices");
+        frame_ = frame_of(*moment.world, integrator);
+        for (size_t d = 0; d < waves_.size(); ++d) {
+          const DriverCall guard;
+          const Features features =
+              features_of(moment.devices[d].device->traits(), *moment.world, integrator, options_);
+          if (!waves_[d]->serves(*moment.devices[d].scene, features))
+            user_error(
+                "motion blur: the scene needs other programs at another moment of this frame; build them all in with "
+                "--features all");
+          waves_[d]->rebind(*moment.devices[d].scene, features, moment.world->camera, true);
+        }
+      }
+      list_->ask(blocks, uint32_t((k + 1) * spp / moments));
+      work_on_all();
+      if (list_->stopped()) {
+        result_.stopped = true;
+        return;
+      }
+    }
+  }
+
   // Pass after pass: all tiles that are open are brought to the next checkpoint and judged there.
   void work_towards_goal() {
     ErrorGoal goal(options_.error, uint32_t(options_.spp), pixels_ / kTilePixels);
@@ -214,7 +251,7 @@ class Job {
     if (stop_requested()) list_->stop();
     const std::lock_guard lock(mutex_);
     if (result_.first_sample_seconds == 0) result_.first_sample_seconds = elapsed;
-    const double all = options_.error > 0 ? expected_ : double(list_->asked());
+    const double all = expected_ > 0 ? expected_ : double(list_->asked());
     // What a goal takes is guessed anew in every pass; the bar does not go back.
     fraction_ = std::max(fraction_, std::min(1.0, double(list_->done()) / all));
     if (options_.seconds > 0) fraction_ = std::max(fraction_, std::min(1.0, elapsed / options_.seconds));
@@ -251,7 +288,7 @@ Features features_of(const DeviceTraits& traits, const World& world, const Integ
 
 Rendered render(std::span<const RenderDevice> devices, const World& world, const IntegratorScene& integrator,
                 const RenderOptions& options, const std::function<void(double)>& progress) {
-  return Job(devices, world, integrator, options, progress).run(world);
+  return Job(devices, world, integrator, options, progress).run(world, integrator);
 }
 
 Rendered render(const Device& device, const World& world, const SceneDevice& scene, const IntegratorScene& integrator,

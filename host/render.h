@@ -9,6 +9,14 @@
 
 namespace wale {
 
+struct RenderDevice;
+
+/// The scene at one of the moments that a picture is made of.
+struct Moment {
+  const World* world = nullptr;
+  std::span<const RenderDevice> devices;
+};
+
 struct RenderOptions {
   int spp = 64;        ///< samples per pixel; with a goal the most
   double error = 0;    ///< > 0: goal; a tile stops when its relative error is this small (host/error_goal.h)
@@ -19,6 +27,9 @@ struct RenderOptions {
   bool count_cpu_time = false;  ///< stages by CPU time: see Wavefront::count_cpu_time
   RayRecord* record = nullptr;  ///< keeps the rays that are sent
   std::filesystem::path kernel_dir;
+  uint32_t moments = 1;     ///< > 1: motion blur; samples are shared out to them in runs, one after the other
+  /// Makes the scene that of moment k > 0 on the same devices; programs must serve it. Not with a goal.
+  std::function<Moment(uint32_t)> at_moment;
   std::function<void()> ready;  ///< called when all programs are built, before the first ray
 };
 

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <string_view>
 
+#include "geom/byte_source.h"
 #include "host/accuracy.h"
+#include "host/animation.h"
 #include "host/json_document.h"
 #include "host/scene_overrides.h"
 
@@ -58,25 +60,21 @@ std::string canonical(const JsonNode& node) {
   return {};
 }
 
-// FNV-1a, 64 bits (Fowler, Noll, Vo).
-uint64_t hash(const std::string& text) {
-  uint64_t h = 0xcbf29ce484222325u;
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return h;
-}
-
 }  // namespace
 
 std::string scene_identity(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   JsonNode document = read_json(file);
   apply_overrides(document, overrides);
+  apply_key_frames(document);
+  if (document.has("animation")) apply_overrides(document, overrides);
+  forget_key_frames(document);
   for (const char* key : {"film.size", "film.exposure", "film.view", "integrator.spp", "integrator.seed",
                           "integrator.lanes", "integrator.pool"})
     remove(document, key);
   for (const AccuracyOption& option : accuracy_options())
     for (const AccuracyLevel& level : option.levels)
       for (const std::string& text : level.overrides) remove(document, text.substr(0, text.find('=')));
-  return fmt::format("{:016x}", hash(canonical(document)));
+  return fmt::format("{:016x}", hash_bytes(canonical(document)));
 }
 
 std::string accuracy_settings(const Scene& scene) {

@@ -79,13 +79,18 @@ void apply(JsonNode& document, const std::string& override_text) {
   const size_t equals = override_text.find('=');
   if (equals == std::string::npos || equals == 0)
     user_error("{}: not of the form key.path=value, for example film.size=[256,256]", option);
-  const auto keys = split(override_text.substr(0, equals));
-  if (keys.size() > kMaxJsonDepth)
-    user_error("{}: a path of {} keys; at most {}", option.substr(0, 60), keys.size(), kMaxJsonDepth);
-  set(document, keys, parse_option_value(override_text.substr(equals + 1), option), option, "");
+  apply_override(document, override_text.substr(0, equals),
+                 parse_option_value(override_text.substr(equals + 1), option), option);
 }
 
 }  // namespace
+
+void apply_override(JsonNode& document, const std::string& path, const JsonNode& value, const std::string& option) {
+  const auto keys = split(path);
+  if (keys.size() > kMaxJsonDepth)
+    user_error("{}: a path of {} keys; at most {}", option.substr(0, 60), keys.size(), kMaxJsonDepth);
+  set(document, keys, value, option, "");
+}
 
 void apply_overrides(JsonNode& document, const std::vector<std::string>& overrides) {
   for (const auto& text : overrides) apply(document, text);

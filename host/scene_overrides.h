@@ -11,4 +11,7 @@ namespace wale {
 /// the option as its place. Throws user errors that name the option and the nearest key.
 void apply_overrides(JsonNode& document, const std::vector<std::string>& overrides);
 
+/// The same of one path and value, which keeps its place; `option` begins messages.
+void apply_override(JsonNode& document, const std::string& path, const JsonNode& value, const std::string& option);
+
 }  // namespace wale

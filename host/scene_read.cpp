@@ -1,7 +1,10 @@
 // A checked document becomes a Scene; what a table of types cannot say is checked here.
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "geom/error.h"
+#include "host/animation.h"
 #include "host/scene.h"
 #include "host/scene_materials.h"
 #include "host/scene_nodes.h"
@@ -28,14 +31,44 @@ void check_view(const JsonNode& node, const std::string& path) {
     fail(up_node, path + ".up", "parallel to the line from position to look_at; choose another direction");
 }
 
+// When a scene is looked at, and the folder that its files are relative to.
+struct Moment {
+  double frame;
+  std::filesystem::path folder;
+};
+
 Transform transform_of(const JsonNode& node) {
   return {number_of(node, "scale"), vector_of(node["rotate"]), vector_of(node["translate"])};
 }
 
-MeshSource mesh_of(const JsonNode& node) {
+long whole_of(const JsonNode& node, std::string_view key) { return std::lround(number_of(node, key)); }
+
+// What the schema cannot say of files of frames: that they are there, and which.
+SequenceSource sequence_of(const JsonNode& node, const std::filesystem::path& folder) {
+  SequenceSource out;
+  if (node.has("cache")) {
+    out.base = node["file"].text;
+    out.cache = node["cache"].text;
+  } else {
+    out.frames = std::filesystem::absolute(folder / node["frames"].text).lexically_normal();
+  }
+  out.first = whole_of(node, "first");
+  out.step = whole_of(node, "step");
+  if (out.step == 0) fail(node["step"], "step", "0 shows one file only; name it as \"file\", or give 1 or more");
+  if (node.has("last")) out.last = whole_of(node, "last");
+  out.rest = whole_of(node, "rest");
+  out.hold = node["missing"].text == "hold";
+  out.changing = node["topology"].text == "changing";
+  return out;
+}
+
+MeshSource mesh_of(const JsonNode& node, const Moment& moment) {
   MeshSource mesh;
   if (node.kind == JsonNode::Kind::string) {
     mesh.file = node.text;
+  } else if (node.has("frames") || node.has("cache")) {
+    mesh.sequence = sequence_of(node, moment.folder);
+    mesh.frame = moment.frame;
   } else if (node.has("file")) {
     mesh.file = node["file"].text;
   } else {
@@ -118,6 +151,16 @@ IntegratorScene integrator_of(const JsonNode& node) {
   return out;
 }
 
+AnimationScene animation_of(const JsonNode& node) {
+  AnimationScene out;
+  out.frame = number_of(node, "frame");
+  out.fps = number_of(node, "fps");
+  out.shutter = number_of(node, "shutter");
+  out.shutter_steps = integer_of(node, "shutter_steps");
+  out.moves = !node["keys"].members.empty();
+  return out;
+}
+
 // Finds a material of the wanted sort; without a name, the default of that sort is made once.
 int find_material(Scene& scene, const JsonNode& user, const std::string& path, bool ply) {
   const JsonNode* name = user.find("material");
@@ -179,7 +222,7 @@ FlyawaySpec flyaways_of(const JsonNode& node, const std::string& path) {
           number_of(node, "length"), number_of(node, "radius")};
 }
 
-FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index) {
+FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index, const Moment& moment) {
   const std::string path = fmt::format("fabrics.{}", index);
   const JsonNode& yarn = node["yarn"];
   FabricScene fabric;
@@ -196,7 +239,7 @@ FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index) {
   fabric.spec.strain = node["strain"].text == "relaxed" ? LoopStrain::relaxed : LoopStrain::affine;
   fabric.spec.storage = storage_of(node["storage"].text);
   fabric.spec.lattice = integer_of(node, "lattice");
-  fabric.mesh = mesh_of(node["mesh"]);
+  fabric.mesh = mesh_of(node["mesh"], moment);
   fabric.transform = transform_of(node["transform"]);
   fabric.pattern = pattern_of(node["pattern"]);
   fabric.material = find_material(scene, node, path, true);
@@ -210,13 +253,13 @@ FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index) {
   return fabric;
 }
 
-ObjectScene object_of(Scene& scene, const JsonNode& node, size_t index) {
+ObjectScene object_of(Scene& scene, const JsonNode& node, size_t index, const Moment& moment) {
   const std::string path = fmt::format("objects.{}", index);
   ObjectScene object;
   object.name = text_or(node, "name", fmt::format("object{}", index));
   const std::string& type = node["type"].text;
   if (type == "mesh") {
-    object.mesh = mesh_of(node["mesh"]);
+    object.mesh = mesh_of(node["mesh"], moment);
     object.transform = transform_of(node["transform"]);
   } else if (type == "sphere") {
     object.kind = ObjectScene::Kind::sphere;
@@ -232,7 +275,7 @@ ObjectScene object_of(Scene& scene, const JsonNode& node, size_t index) {
   return object;
 }
 
-LightScene light_of(const JsonNode& node, size_t index) {
+LightScene light_of(const JsonNode& node, size_t index, const Moment& moment) {
   const std::string path = fmt::format("lights.{}", index);
   const std::string& type = node["type"].text;
   LightScene light;
@@ -253,7 +296,7 @@ LightScene light_of(const JsonNode& node, size_t index) {
     light.radius = number_of(node, "radius");
   } else if (type == "mesh") {
     light.kind = LightScene::Kind::mesh;
-    light.mesh = mesh_of(node["mesh"]);
+    light.mesh = mesh_of(node["mesh"], moment);
     light.transform = transform_of(node["transform"]);
   } else {
     light.kind = LightScene::Kind::environment;
@@ -274,6 +317,8 @@ void check_names(const JsonNode& list, const std::string& path) {
 
 Scene scene_of(JsonNode root, const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   apply_overrides(root, overrides);
+  apply_key_frames(root);
+  if (root.has("animation")) apply_overrides(root, overrides);  // what they say goes before keys
   SchemaContext context{1, std::filesystem::absolute(file).parent_path()};
   // Lengths are converted while the document is checked, so the units are looked up first; a wrong word is found there.
   const JsonNode* units = root.find("units");
@@ -287,19 +332,29 @@ Scene scene_of(JsonNode root, const std::filesystem::path& file, const std::vect
   if (scene.camera_given) scene.camera = camera_of(root["camera"]);
   scene.film = film_of(root["film"]);
   scene.integrator = integrator_of(root["integrator"]);
+  scene.animation = animation_of(root["animation"]);
+  const Moment moment{scene.animation.frame, context.folder};
   for (const auto& member : root["materials"].members) scene.materials.push_back(material_of(member.key, member.value));
   for (const char* key : {"fabrics", "objects", "lights"}) check_names(root[key], key);
   for (size_t i = 0; i < root["fabrics"].items.size(); ++i)
-    scene.fabrics.push_back(fabric_of(scene, root["fabrics"].items[i], i));
+    scene.fabrics.push_back(fabric_of(scene, root["fabrics"].items[i], i, moment));
   for (size_t i = 0; i < root["objects"].items.size(); ++i)
-    scene.objects.push_back(object_of(scene, root["objects"].items[i], i));
+    scene.objects.push_back(object_of(scene, root["objects"].items[i], i, moment));
   int environments = 0;
   for (size_t i = 0; i < root["lights"].items.size(); ++i) {
     const JsonNode& node = root["lights"].items[i];
-    scene.lights.push_back(light_of(node, i));
+    scene.lights.push_back(light_of(node, i, moment));
     if (scene.lights.back().kind == LightScene::Kind::environment && ++environments > 1)
       fail(node, fmt::format("lights.{}", i), "a second environment light; a scene has at most one");
   }
+  const auto& tracks = root["animation"]["keys"].members;
+  const bool keyed_fabrics =
+      std::any_of(tracks.begin(), tracks.end(), [](const auto& track) { return track.key.starts_with("fabrics."); });
+  const auto moving = [](const auto& list) {
+    return std::any_of(list.begin(), list.end(), [](const auto& item) { return item.mesh.sequence.has_value(); });
+  };
+  for (FabricScene& fabric : scene.fabrics) fabric.moves = fabric.mesh.sequence.has_value() || keyed_fabrics;
+  scene.animation.moves |= moving(scene.fabrics) || moving(scene.objects) || moving(scene.lights);
   if (scene.lights.empty()) {
     scene.lights.emplace_back();
     scene.lights.back().kind = LightScene::Kind::environment;

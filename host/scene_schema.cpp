@@ -1,5 +1,6 @@
 #include "host/scene_schema.h"
 
+#include "host/animation.h"
 #include "host/bundled_tiles.h"
 #include "host/material_schema.h"
 #include "host/scene.h"
@@ -54,8 +55,8 @@ Type integrator() {
        "how segments of a ply meet: cut square, with a sphere, or cut by the bisecting plane", "mitre"},
       {"normals", word({"flat", "linear", "rotation-minimising"}),
        "frames that plies are shaded with: of each segment, or interpolated between joints", "rotation-minimising"},
-      {"vertices", word({"quantised", "full"}),
-       "how stored curves keep their points: 16 bits a coordinate, or floats", "full"},
+      {"vertices", word({"quantised", "full"}), "how stored curves keep their points: 16 bits a coordinate, or floats",
+       "full"},
       {"precision", word({"float", "double"}), "arithmetic of rays and shading (needs a device with fp64)", "float"},
       {"ply_shadows", word({"attenuated", "opaque"}),
        "whether plies let the uncollided light of a lamp pass, as they do on paths", "attenuated"},
@@ -96,7 +97,25 @@ Type mesh() {
        {"draped_square", object({size("size", "0.3", "side of the cloth"),
                                  size("sphere_radius", "0.08", "of the sphere below, at the origin"), nu("64")})}});
   const auto named = object({{"file", file(), "OBJ, PLY or OFF", "", true}});
-  return either({{"", file()}, {"file", named}, {"generator", generated}});
+  const auto moving = [](std::vector<Property> keys) {
+    const Range numbers{-1e9, 1e9};
+    for (const Property& key : std::vector<Property>{
+             {"first", integer(numbers), "number of the file, or place in it, at frame 0", "0"},
+             {"step", integer({-1e6, 1e6, false, 1}), "numbers from one frame to the next", "1"},
+             {"last", integer(numbers), "number beyond which nothing is read; absent = the last there is"},
+             {"rest", integer(numbers), "frame on which the cloth is knitted", "0"},
+             {"missing", word({"stop", "hold"}),
+              "a frame that is not there or damaged: an error, or the frame before it stays", "stop"},
+             {"topology", word({"fixed", "changing"}),
+              "all frames have the same triangles, or each is a mesh of its own with UV on the same cloth", "fixed"}})
+      keys.push_back(key);
+    return object(keys);
+  };
+  const auto cached = moving({{"file", file(), "OBJ, PLY or OFF", "", true},
+                              {"cache", file(), "point cache (.pc2) that moves its vertices", "", true}});
+  const auto frames =
+      moving({{"frames", text(), "\"cloth_####.obj\", one file a frame, or a file of frames (.bin)", "", true}});
+  return either({{"", file()}, {"cache", cached}, {"file", named}, {"frames", frames}, {"generator", generated}});
 }
 
 Type pattern() {
@@ -107,7 +126,8 @@ Type pattern() {
       {"stitches", vector(2, {1, 10000}, Unit::none, true), "wales and courses in the tile"},
       {"unit", number({1e-9, 1e3}), "metres per unit of the file"},
   });
-  const auto built_in = object({{"builtin", word(bundled_tiles()), "stockinette in closed form, or a relaxed tile of docs/patterns.md", "", true}});
+  const auto built_in = object({{"builtin", word(bundled_tiles()),
+                                 "stockinette in closed form, or a relaxed tile of docs/patterns.md", "", true}});
   return either({{"", file()}, {"file", named}, {"builtin", built_in}});
 }
 
@@ -146,7 +166,8 @@ Type fabric() {
           {"detail", word({"none", "paper", "maps", "fibres"}),
            "of plies: the tube, maps as KNIT21, maps, or explicit fibres", "maps"},
           {"strain", word({"affine", "relaxed"}),
-           "of loops where the cloth is stretched: scaled with it, or as the tile's own table of strains says", "affine"},
+           "of loops where the cloth is stretched: scaled with it, or as the tile's own table of strains says",
+           "affine"},
           {"storage", word({"auto", "stored", "procedural"}),
            "points of plies kept, or warped from a lattice where a ray needs them; auto = by size", "auto"},
           {"lattice", count(0, 64),
@@ -226,6 +247,7 @@ const SchemaType& scene_type() {
       {"camera", camera(), "absent = frames the fabrics"},
       {"film", film(), "the image", "{}"},
       {"integrator", integrator(), "accuracy and effort", "{}"},
+      {"animation", animation_type(), "frames, key frames and motion blur", "{}"},
       {"materials", map(material_type()), "by name", "{}"},
       {"fabrics", list(fabric()), "knitted cloth", "[]"},
       {"objects", list(scene_object()), "everything else that is seen", "[]"},

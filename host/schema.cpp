@@ -131,6 +131,8 @@ Type either(std::vector<std::pair<std::string, Type>> alternatives) {
   return type;
 }
 
+Type any() { return make(Kind::any); }
+
 double srgb_to_linear(double encoded) {
   return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }

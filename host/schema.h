@@ -59,7 +59,8 @@ struct SchemaType {
     map,
     object,
     tagged,
-    either
+    either,
+    any
   } kind;
   Unit unit = Unit::none;
   Range range;                       ///< integer, number, and every component of a vector
@@ -92,6 +93,8 @@ Type map(Type item);
 Type object(std::vector<Property> properties, std::vector<KeyGroup> groups = {});
 Type tagged(std::string tag, std::vector<std::pair<std::string, Type>> alternatives, std::string default_tag = "");
 Type either(std::vector<std::pair<std::string, Type>> alternatives);
+/// A value that is checked elsewhere.
+Type any();
 
 /// What a check needs to know besides the table.
 struct SchemaContext {

@@ -123,6 +123,8 @@ ordered_json text_of(const SchemaType& type) {
       for (const auto& alternative : type.alternatives) choices.push_back(text_of(*alternative));
       return {{"oneOf", choices}};
     }
+    case Kind::any:
+      return ordered_json::object();
   }
   bug("schema: a kind of type without text");
 }

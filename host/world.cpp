@@ -7,6 +7,7 @@
 
 #include "geom/error.h"
 #include "host/analysis.h"
+#include "host/features.h"
 #include "host/knit_fabrics.h"
 #include "host/materials.h"
 #include "host/placement.h"
@@ -35,8 +36,12 @@ std::array<float, 3> rgb3(const Rgb& c) { return {float(c[0]), float(c[1]), floa
 
 class Builder {
  public:
-  Builder(const Scene& scene, const Loaders& loaders, const BuildProgress& progress)
-      : scene_(scene), loaders_(loaders), progress_(progress) {}
+  Builder(const Scene& scene, const Loaders& loaders, const BuildProgress& progress, const WorldOptions& options)
+      : scene_(scene), loaders_(loaders), progress_(progress), options_(options), previous_(options.previous) {}
+  // What was taken goes back, unless build() came to its end.
+  ~Builder() {
+    if (previous_ && !done_) give_back_fabrics(world_, *previous_);
+  }
 
   World build() {
     step("knit", [&] { knit_all(); });
@@ -47,6 +52,9 @@ class Builder {
       add_lights();
     });
     world_.camera = camera();
+    world_.local_stage = local_stage(scene_.integrator);
+    world_.leaf_form = leaf_form(scene_.integrator);
+    done_ = true;
     return std::move(world_);
   }
 
@@ -61,29 +69,71 @@ class Builder {
   }
 
   void knit_all() {
-    std::vector<KnittedFabric> knitted = knit_fabrics(scene_, loaders_, [&](double done) {
-      if (progress_) progress_("knit", done);
-    });
+    std::vector<KnittedFabric> knitted = knit_fabrics(
+        scene_, loaders_,
+        [&](double done) {
+          if (progress_) progress_("knit", done);
+        },
+        previous_);
     for (size_t f = 0; f < knitted.size(); ++f) {
       const FabricScene& fabric = scene_.fabrics[f];
       const PlyAppearance& yarn = scene_.materials.at(size_t(fabric.material)).yarn;
-      world_.notes.insert(world_.notes.end(), knitted[f].notes.begin(), knitted[f].notes.end());
-      world_.fabric_mesh_reports.push_back(knitted[f].mesh_report);
-      world_.fabrics.push_back(std::move(knitted[f].fabric));
+      take(knitted[f]);
       Fabric& made = world_.fabrics.back();
-      bounds_.add(made.mesh), fabric_bounds_.add(made.mesh);
+      add_bounds(made, fabric.transform);
       world_.fabric_material.push_back(uint32_t(world_.ply_materials.size()));
-      world_.ply_materials.push_back(ply_material(yarn));
+      const MadeYarn& material = make_yarn(yarn, made.report.fibres > 0);
+      world_.ply_materials.push_back(material.ply);
       world_.fibres.add(fibre_recipe(yarn), made.ply_radius, fabric.spec.detail);
       const bool fibres = made.report.fibres > 0;
       world_.fabric_fibre_material.push_back(fibres ? uint32_t(world_.fibre_materials.size()) : W_NONE);
-      if (fibres) world_.fibre_materials.push_back(fibre_material(yarn));
+      if (fibres) world_.fibre_materials.push_back(*material.fibre);
       color_plies(made, yarn, fabric.color_image, knitted[f].yarn_colors);
     }
   }
 
-  void color_plies(Fabric& fabric, const PlyAppearance& yarn, const ColorImage& image,
-                   const std::vector<Rgb>& yarns) {
+  // As an earlier version has it, if it is the same.
+  const MadeYarn& make_yarn(const PlyAppearance& yarn, bool fibres) {
+    if (previous_)
+      for (const MadeYarn& made : previous_->made_yarns)
+        if (made.from == yarn && made.fibre.has_value() == fibres) return world_.made_yarns.emplace_back(made);
+    MadeYarn made{yarn, ply_material(yarn), {}};
+    if (fibres) made.fibre = fibre_material(yarn);
+    return world_.made_yarns.emplace_back(std::move(made));
+  }
+
+  void take(KnittedFabric& knitted) {
+    world_.fabrics.emplace_back();
+    if (const auto from = knitted.of_previous) {
+      world_.fabric_mesh_reports.push_back(previous_->fabric_mesh_reports[*from]);
+      world_.knittings.push_back(previous_->knittings[*from]);
+      std::swap(world_.fabrics.back(), previous_->fabrics[*from]);
+      if (!knitted.moved.triangle.empty()) world_.knittings.back().place = knitted.knitting.place;
+    } else {
+      world_.fabric_mesh_reports.push_back(knitted.mesh_report);
+      world_.knittings.push_back(std::move(knitted.knitting));
+      world_.fabrics.back() = std::move(knitted.fabric);
+    }
+    if (!knitted.moved.triangle.empty()) follow_mesh(world_.fabrics.back(), knitted.moved);
+    for (const auto& notes : {world_.knittings.back().notes, knitted.frame_notes})
+      world_.notes.insert(world_.notes.end(), notes.begin(), notes.end());
+  }
+
+  // A cloth that moves counts as it is at rest: neither the ground nor a camera that nobody placed follows every fold.
+  void add_bounds(const Fabric& fabric, const Transform& transform) {
+    Bounds here;
+    here.add(fabric.mesh);
+    if (world_.knittings.back().place) {
+      moving_.add(here.centre());
+      BaseMesh rest = *fabric.mesh.rest;
+      transform_mesh(rest, {1, transform.rotate, transform.translate});
+      bounds_.add(rest), fabric_bounds_.add(rest);
+    } else {
+      bounds_.add(fabric.mesh), fabric_bounds_.add(fabric.mesh);
+    }
+  }
+
+  void color_plies(Fabric& fabric, const PlyAppearance& yarn, const ColorImage& image, const std::vector<Rgb>& yarns) {
     const size_t before = vertices_;
     vertices_ += fabric.anchors.size();
     if (!colors_vary(yarn, image, yarns)) {
@@ -95,7 +145,7 @@ class Builder {
     world_.ply_colors.resize(before, 0);  // fabrics before it keep their materials' colours
     world_.ply_colors.insert(world_.ply_colors.end(), words.begin(), words.end());
     world_.colored_fabrics.push_back(fabric.name);
-    fabric.place = {};
+    if (!options_.editable) fabric.place = {};
   }
 
   int add_material(const SurfaceAppearance& look) {
@@ -160,7 +210,7 @@ class Builder {
         centre += up * (object.height - glm::dot(centre, up));
         add_quad(centre, u * object.extent, v * object.extent, material);
       } else {
-        BaseMesh mesh = load_mesh(object.mesh, loaders_);
+        BaseMesh mesh = load_mesh(object.mesh, loaders_, &world_.notes);
         transform_mesh(mesh, object.transform);
         refuse_if_out_of_reach(mesh, object.name);
         bounds_.add(mesh);
@@ -173,6 +223,12 @@ class Builder {
     world_.origin = !fabric_bounds_.empty() ? fabric_bounds_.centre()
                     : !bounds_.empty()      ? bounds_.centre()
                                             : scene_.camera.look_at;
+    if (!moving_.empty()) {
+      // Only an origin that stays lets a fabric be moved in place: that of a coarse grid near the cloth, which costs
+      // three bits of a float at most.
+      const double grid = std::exp2(std::ceil(std::log2(8 * fabric_bounds_.radius())));
+      world_.origin = grid * glm::round(moving_.centre() / grid);
+    }
   }
 
   void upload_triangle(const Triangle& t) {
@@ -254,7 +310,7 @@ class Builder {
   }
 
   void add_mesh_light(const LightScene& light, LightTableBuilder& tables) {
-    BaseMesh mesh = load_mesh(light.mesh, loaders_);
+    BaseMesh mesh = load_mesh(light.mesh, loaders_, &world_.notes);
     transform_mesh(mesh, light.transform);
     const int material = add_emitter(light.radiance, false);
     const size_t first = triangles_.size();
@@ -327,8 +383,12 @@ class Builder {
   const Scene& scene_;
   const Loaders& loaders_;
   const BuildProgress& progress_;
+  const WorldOptions& options_;
+  World* previous_;
+  bool done_ = false;
   World world_;
   Bounds bounds_, fabric_bounds_;
+  Bounds moving_;        ///< of the middles of fabrics that follow their mesh
   size_t vertices_ = 0;  ///< of the fabrics so far
   std::vector<Triangle> triangles_;
   std::vector<Sphere> spheres_;
@@ -336,9 +396,19 @@ class Builder {
 
 }  // namespace
 
-World build_world(const Scene& scene, const Loaders& loaders, const BuildProgress& progress, bool drop) {
-  World world = Builder(scene, loaders, progress).build();
-  if (drop) drop_what_cannot_matter(world);
+void give_back_fabrics(World& from, World& previous) {
+  for (size_t i = 0; i < from.fabrics.size(); ++i)
+    for (size_t k = 0; k < previous.fabrics.size(); ++k)
+      if (previous.knittings[k].number == from.knittings[i].number) {
+        std::swap(previous.fabrics[k], from.fabrics[i]);
+        previous.knittings[k].place = from.knittings[i].place;  // its mesh has been moved
+      }
+}
+
+World build_world(const Scene& scene, const Loaders& loaders, const BuildProgress& progress,
+                  const WorldOptions& options) {
+  World world = Builder(scene, loaders, progress, options).build();
+  if (options.drop) drop_what_cannot_matter(world);
   return world;
 }
 

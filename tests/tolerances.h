@@ -76,4 +76,9 @@ constexpr double kBytesToTrace = 30, kBytesToShade = 48, kProceduralBytes = 4;
 // Stored leaves against their estimate (host/memory_needs.h): some hold fewer intervals than others of their yarn.
 constexpr double kLeafBytes = 0.1;
 
+// Animation. Memory of a tiny scene over a hundred frames, MB: what an allocator keeps or gives back by chance. Lengths
+// along yarns and azimuths of a cloth that is knitted anew on other triangles: a float of some metres, and of a turn.
+constexpr double kMegabytesInHundredFrames = 3;
+constexpr double kSameLength = 2e-6, kSameDirection = 2e-5;
+
 }  // namespace wale::tolerance

@@ -1,7 +1,8 @@
 // Building and updating: a knitted fabric's curves through Wale's warp, leaves and tree, and through Intel Embree's
 // round linear curves, in one process, interleaved: embree_updates [segments] [repetitions] [rows.csv]. Prints medians
 // of wall and CPU time on two threads each, and of the ratios of every repetition; appends the figures to the rows'
-// file. A frame moves the base mesh; Embree is handed the new points ready made, Wale makes them.
+// file. A frame moves the base mesh; Embree is handed the new points ready made, Wale makes them. Last come the same
+// from the new base mesh in double, as it is read, to the first ray's hit.
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
@@ -43,14 +44,11 @@ Fabric sheet(double segments) {
 }
 
 /// The base mesh at a moment of its motion: a wave runs through the sheet. Metres.
-void wave(const BaseMesh& mesh, double time, std::vector<float>& positions, std::vector<float>& normals) {
-  positions.clear();
-  normals.clear();
-  for (const dvec3& p : mesh.position) {
+void wave(const BaseMesh& flat, double time, BaseMesh& mesh) {
+  for (size_t i = 0; i < flat.position.size(); ++i) {
+    const dvec3& p = flat.position[i];
     const double height = 0.01, k = 60, a = k * p.x + time;
-    const dvec3 n = glm::normalize(dvec3(-height * k * std::cos(a), 0, 1));
-    for (const double x : {p.x, p.y, p.z + height * std::sin(a)}) positions.push_back(float(x));
-    for (int i = 0; i < 3; ++i) normals.push_back(float(n[i]));
+    mesh.position[i] = {p.x, p.y, p.z + height * std::sin(a)};
   }
 }
 
@@ -119,6 +117,19 @@ class Peer {
     });
   }
 
+  /// Sends one ray.
+  void hit(dvec3 from, dvec3 along) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit r{};
+    r.ray.org_x = float(from.x), r.ray.org_y = float(from.y), r.ray.org_z = float(from.z);
+    r.ray.dir_x = float(along.x), r.ray.dir_y = float(along.y), r.ray.dir_z = float(along.z);
+    r.ray.tfar = 1e30f;
+    r.ray.mask = ~0u;
+    r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene_, &context, &r);
+  }
+
   const char* name;
   int64_t bytes = 0;
 
@@ -173,11 +184,11 @@ int main(int argc, char** argv) {
   fmt::print("| | wall, ms | CPU, ms | Wale / Embree, wall | CPU |\n| --- | --- | --- | --- | --- |\n");
   fmt::print("| knit: stitch, plies, cut | {:.4g} | {:.4g} | | |\n", 1e3 * knit.wall, 1e3 * knit.cpu);
 
-  std::vector<float> positions, normals;
   // Scenes of default or low quality take as long as one of high quality.
   Peer peers[kPeers] = {{"high quality", RTC_BUILD_QUALITY_HIGH, RTC_BUILD_QUALITY_HIGH, RTC_SCENE_FLAG_NONE},
                         {"dynamic, refit", RTC_BUILD_QUALITY_LOW, RTC_BUILD_QUALITY_REFIT, RTC_SCENE_FLAG_DYNAMIC}};
-  Row upload_row, warp_row, tree_row, update_row, refit_row, commit_row[kPeers], build_row[kPeers];
+  Row upload_row, tree_row, update_row, refit_row, commit_row[kPeers], build_row[kPeers], first_row,
+      peer_first_row[kPeers];
   int64_t peer_bytes[kPeers] = {};
   const FabricWarp still(device, {&input, 1}, {0, 0, 0});
   const std::vector<float> points = still.points().read(device);
@@ -208,25 +219,48 @@ int main(int argc, char** argv) {
     FabricDevice moving = upload_fabrics(device, {&input, 1}, {0, 0, 0}, LocalStage::exact, true);
     shade_bytes = trace_bytes + moving.frames.bytes();
     update_bytes = moving.bytes;
+    FabricTracer tracer(device, fabric, -1, LocalStage::exact, true);
+    const BaseMesh flat = fabric.mesh;
+    const dvec3 from(0.0007, 0.0003, 0.1), along(0, 0, -1);
+    Ray ray;
+    for (int a = 0; a < 3; ++a) ray.o[a] = float(from[a]), ray.d[a] = float(along[a]);
     double time = 0;
     for (int i = 0; i < kPeers; ++i) {
       peers[i].build(fabric, points);
       for (int k = -1; k < repetitions; ++k) {  // the first one is not counted
-        wave(fabric.mesh, time += 0.7, positions, normals);
-        const Seconds whole = time_of([&] { update_fabrics(device, moving, positions, normals); });
-        const Seconds theirs = peers[i].update(moving.warp->points().read(device));
+        wave(flat, time += 0.7, fabric.mesh);
+        compute_normals(fabric.mesh);
+        const MeshVertices mesh = mesh_vertices({&input, 1}, {0, 0, 0});
+        const Seconds whole = time_of([&] { update_fabrics(device, moving, mesh.positions, mesh.normals); });
+        const std::vector<float> moved = moving.warp->points().read(device);
+        const Seconds theirs = peers[i].update(moved);
         const Seconds nodes = time_of([&] { refit(device, moving.tree); });
+        // Once more, each to its first hit; the peer's scene is dirty again.
+        const Seconds first = time_of([&] {
+          compute_normals(fabric.mesh);
+          const MeshVertices now = mesh_vertices({&input, 1}, {0, 0, 0});
+          tracer.move(now.positions, now.normals);
+          tracer.trace({ray});
+        });
+        Seconds peer_first = peers[i].update(moved);
+        peer_first += time_of([&] { peers[i].hit(from, along); });
         if (k < 0) continue;
         commit_row[i].add(theirs, whole);
         update_row.add(whole, {});
         refit_row.add(nodes, {});
+        first_row.add(first, {});
+        peer_first_row[i].add(peer_first, first);
       }
       peers[i].clear();
     }
+    fabric.mesh = flat;
   }
   update_row.print("update: warp, leaves and nodes", false);
   refit_row.print("of it leaves and nodes", false);
   for (int i = 0; i < kPeers; ++i) commit_row[i].print(fmt::format("Embree commit, {}", peers[i].name), true);
+  first_row.print("new base mesh to first hit", false);
+  for (int i = 0; i < kPeers; ++i)
+    peer_first_row[i].print(fmt::format("Embree commit to first hit, {}", peers[i].name), true);
   fmt::print("\nbytes a segment: {:.1f} to trace, {:.1f} to shade too, {:.1f} to update too; Embree",
              double(trace_bytes) / segments, double(shade_bytes) / segments, double(update_bytes) / segments);
   for (int i = 0; i < kPeers; ++i)

@@ -62,6 +62,39 @@ def patterns():
     write("tile_json", "ring", json.dumps(tile))
 
 
+def sequences():
+    def matrix(rows, columns, kind, values):
+        return struct.pack("<II", rows, columns) + struct.pack(f"<{rows * columns}{kind}", *values)
+
+    def empty(columns):
+        return struct.pack("<II", 0, columns)
+
+    def frame(vertices, triangles, uv, uv_triangles, obstacles=0):
+        out = matrix(len(vertices) // 3, 3, "f", vertices)
+        out += matrix(len(triangles) // 3, 3, "I", triangles) if triangles else empty(3)
+        out += matrix(len(uv) // 2, 2, "f", uv) if uv else empty(2)
+        out += matrix(len(uv_triangles) // 3, 3, "I", uv_triangles) if uv_triangles else empty(3)
+        out += bytes([obstacles])
+        for _ in range(obstacles):
+            out += struct.pack("<f", 1) + matrix(3, 1, "f", [0] * 3) + matrix(4, 1, "f", [0] * 4)
+        out += bytes([obstacles]) + matrix(2, 3, "f", [0] * 6) * obstacles
+        return out + bytes([obstacles]) + matrix(1, 3, "I", [0] * 3) * obstacles
+
+    square, faces, uv = [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0], [0, 1, 2, 0, 2, 3], [0, 0, 1, 0, 1, 1, 0, 1]
+    up = [x + (i % 3 == 2) for i, x in enumerate(square)]
+    write("frames", "moves", b"\x02" + frame(square, faces, uv, faces) + frame(up, [], [], []))
+    write("frames", "obstacle", b"\x01" + frame(square, faces, uv, faces, 1))
+    write("frames", "remeshed", b"\x02" + frame(square, faces, uv, faces) + frame(square[:9], faces[:3], uv[:6], faces[:3]))
+    write("frames", "long", b"\x80\x82" + frame(square, faces, [], []) + frame(up, [], [], []) * 129)
+
+    def cache(points, samples, rate):
+        head = b"POINTCACHE2\0" + struct.pack("<iiffi", 1, points, 1, rate, samples)
+        return head + struct.pack(f"<{3 * points * samples}f", *[i % 7 for i in range(3 * points * samples)])
+
+    write("pc2", "one", cache(3, 1, 1))
+    write("pc2", "half", cache(3, 4, 0.5))
+
+
 def charts():
     write("chart", "rib", "name: rib\nk2 p2\n")
     write("chart", "lace", "# holes\nk6\nk3 yo k2tog k\nk6\nssk o k4\n")
@@ -165,5 +198,6 @@ def images():
 patterns()
 charts()
 meshes()
+sequences()
 scenes()
 images()

@@ -32,6 +32,8 @@ bool knitout(std::string_view bytes);
 bool obj(std::string_view bytes);
 bool ply(std::string_view bytes);
 bool off(std::string_view bytes);
+bool frames(std::string_view bytes);
+bool pc2(std::string_view bytes);
 bool mesh_text(std::string_view bytes);
 bool scene(std::string_view bytes);
 bool material(std::string_view bytes);

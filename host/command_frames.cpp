@@ -1,0 +1,277 @@
+#include "host/command_frames.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <set>
+
+#include "geom/error.h"
+#include "geom/numbered_name.h"
+#include "host/atomic_file.h"
+#include "host/frame_identity.h"
+#include "host/frame_range.h"
+#include "host/frame_stats.h"
+#include "host/image_coder.h"
+#include "host/live_scene.h"
+#include "host/progress.h"
+#include "host/rare_events.h"
+#include "host/rehearsal.h"
+#include "host/sampling_report.h"
+#include "host/scene_identity.h"
+#include "host/stop.h"
+#include "host/video.h"
+
+namespace wale {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// A frame to be shown and what is written of it.
+struct Frame {
+  double at = 0;
+  std::vector<std::filesystem::path> files;
+  std::string identity;
+  bool finished = false;
+};
+
+class Frames {
+ public:
+  Frames(const RenderArgs& args, const Loaders& loaders)
+      : args_(args), loaders_(loaders), sequences_(loaders.mesh), identity_(args, sequences_) {
+    loaders_.sequence = [this](const SequenceSource& source) { return sequences_.open(source); };
+    plan();
+  }
+
+  int run() {
+    if (std::all_of(frames_.begin(), frames_.end(), [](const Frame& f) { return f.finished; }))
+      say("all {} frames are finished", frames_.size());
+    else
+      render_all();
+    if (!args_.stats.empty()) stats_.write(args_.stats);
+    if (args_.video.empty()) return 0;
+    if (stop_requested()) {
+      say("no video: not all of its frames are there", 0);
+      return 0;
+    }
+    make_video();
+    return 0;
+  }
+
+ private:
+  template <typename... Args>
+  void say(fmt::format_string<Args...> format, Args&&... args) const {
+    if (!args_.quiet) fmt::print(stderr, "{}\n", fmt::format(format, std::forward<Args>(args)...));
+  }
+
+  std::vector<std::string> overrides(double frame) const {
+    std::vector<std::string> all = overrides_of(args_);
+    all.push_back(fmt::format("animation.frame={}", frame));
+    return all;
+  }
+
+  Scene scene_at(double frame) const {
+    Scene scene = read_scene(args_.scene, overrides(frame));
+    scene.accuracy_preset = args_.preset;
+    if (!args_.size.empty()) apply_size(args_.size, scene.film);
+    return scene;
+  }
+
+  // Everything that can be refused is refused before the long work starts.
+  void plan() {
+    const Scene first = read_scene(args_);
+    blurred_ = first.animation.shutter > 0;
+    fps_ = first.animation.fps;
+    std::vector<double> times = {first.animation.frame};
+    if (!args_.frames.empty()) {
+      const std::vector<long> range = frame_range(args_.frames);
+      times.assign(range.begin(), range.end());
+    }
+    for (const auto& output : args_.outputs)
+      if (times.size() > 1 && !NumberedName::is_one(output))
+        user_error("{}: {} frames cannot share a name; write # for each digit of their number, for example {}_####{}",
+                   output.string(), times.size(), output.stem().string(), output.extension().string());
+    if (!args_.stats.empty()) require_writable_path(args_.stats);
+    if (!args_.video.empty()) require_video(args_.video);
+    for (const double at : times) {
+      Frame frame{at, {}, {}, false};
+      for (const auto& output : args_.outputs) {
+        frame.files.push_back(NumberedName::is_one(output) ? NumberedName(output).file(std::lround(at)) : output);
+        aovs_ |= output.extension() == ".exr";
+      }
+      check(frame);
+      frames_.push_back(std::move(frame));
+    }
+    for (const auto& output : frames_.front().files) require_writable(output);
+  }
+
+  void check(Frame& frame) {
+    const Scene scene = scene_at(frame.at);
+    const double shutter = scene.animation.shutter;
+    if (shutter > 0 && (args_.error > 0 || args_.seconds > 0))
+      user_error("--{}: a goal would not give every moment of a blurred frame its samples; valid: --spp",
+                 args_.error > 0 ? "error" : "seconds");
+    most_samples(args_, scene.integrator);
+    const auto require = [&](const MeshSource& mesh) {
+      if (mesh.sequence) sequences_.open(*mesh.sequence)->require(mesh.frame);
+    };
+    for (const auto& fabric : scene.fabrics) require(fabric.mesh);
+    for (const auto& object : scene.objects) require(object.mesh);
+    for (const auto& light : scene.lights) require(light.mesh);
+    if (args_.frames.empty()) return;  // one picture, always made
+    frame.identity = identity_.of(scene, overrides(frame.at));
+    size_t there = 0;
+    for (const auto& file : frame.files) {
+      std::error_code failed;
+      if (!std::filesystem::exists(file, failed)) continue;
+      if (image_text(file, kFrameAttribute) == frame.identity) {
+        ++there;
+      } else if (!args_.redo) {
+        user_error(
+            "{}: not this frame of this scene with these settings, and not written over; move it, choose another name, "
+            "or give --redo",
+            file.string());
+      }
+    }
+    frame.finished = there == frame.files.size();
+  }
+
+  void render_all() {
+    const auto next = [&](size_t i) {
+      while (i < frames_.size() && frames_[i].finished) ++i;
+      return i;
+    };
+    const size_t first = next(0);
+    if (first > 0) say("{} of {} frames are finished and kept", finished(), frames_.size());
+    const Scene scene = scene_at(frames_[first].at);
+    Rehearsal rehearsal(args_.device, [&](const DeviceTraits& traits) {
+      const Features features = foresee(scene, aovs_, traits).with(args_.also);
+      auto stages = geometry_stages(features);
+      for (auto& stage : wavefront_stages(features)) stages.push_back(std::move(stage));
+      return Rehearsal::Plan{stages, features.options(), args_.kernel_dir};
+    });
+    for (const unsigned number : device_numbers(args_.device)) devices_.push_back(Device::open(number));
+    rehearsal.begin(devices_);
+    RenderOptions options;
+    options.error = args_.error;
+    options.seconds = args_.seconds;
+    options.aovs = aovs_;
+    options.also = args_.also;
+    options.kernel_dir = args_.kernel_dir;
+    options.ready = catch_stop_signals;
+    live_ = std::make_unique<LiveScene>(devices_, loaders_, LiveScene::Options{options, true});
+    Progress bar(frames_.size() > 1 ? "frames" : "render", args_.quiet);
+    size_t made = 0;
+    for (size_t i = first; i < frames_.size() && !stop_requested(); i = next(i + 1)) {
+      const auto show = [&](double part) {
+        bar.update((double(i) + part) / double(frames_.size()), fmt::format("frame {:g}", frames_[i].at));
+      };
+      show(0);
+      if (!render(frames_[i], options, show)) break;
+      ++made;
+    }
+    bar.finish(stop_requested() ? "stopped" : "");
+    if (!stop_requested()) rehearsal.finish();
+    if (stop_requested())
+      say("stopped: {} of {} frames are finished; the same command goes on from there", finished(), frames_.size());
+    if (nan_) bug("render: {} samples were not finite; the pictures were written without them", nan_);
+  }
+
+  size_t finished() const {
+    return size_t(std::count_if(frames_.begin(), frames_.end(), [](const Frame& f) { return f.finished; }));
+  }
+
+  // False when it was stopped.
+  bool render(Frame& frame, RenderOptions options, const std::function<void(double)>& show) {
+    Scene scene = scene_at(frame.at);
+    options.spp = most_samples(args_, scene.integrator);
+    const uint32_t moments = blurred_ ? uint32_t(std::min(scene.animation.shutter_steps, options.spp)) : 1;
+    const double shutter = scene.animation.shutter;
+    // The middle of each of equal parts of the time that the shutter is open.
+    const auto moment = [&](uint32_t k) { return frame.at + shutter * (k + 0.5) / moments; };
+    FrameStats::Row row{frame.at};
+    const auto apply = [&](const Scene& version) {
+      const auto start = Clock::now();
+      const Redone redone = live_->apply(version);
+      row.add(redone, live_->devices().front().scene->fabric(), since(start));
+      note(live_->world().notes);
+    };
+    apply(blurred_ ? scene_at(moment(0)) : scene);
+    if (stop_requested()) return false;
+    options.moments = moments;
+    options.at_moment = [&](uint32_t k) {
+      apply(scene_at(moment(k)));
+      return Moment{&live_->world(), live_->devices()};
+    };
+    const Rendered r = wale::render(live_->devices(), live_->world(), scene.integrator, options, [&](double f) {
+      if (!args_.outputs.empty()) image_coder();
+      show(f);
+    });
+    if (r.stopped && stop_requested()) return false;
+    const auto start = Clock::now();
+    write(frame, scene, options, r);
+    row.write_seconds = since(start);
+    row.add(r);
+    stats_.rows.push_back(row);
+    report(r);
+    frame.finished = true;
+    return true;
+  }
+
+  void write(const Frame& frame, const Scene& scene, const RenderOptions& options, const Rendered& r) {
+    Image image = r.image;
+    image.figures = sampling_attributes({options.spp, options.error, options.seconds, r.stopped, r.reached});
+    image.attributes = {{kSceneAttribute, scene_identity(args_.scene, overrides(frame.at))},
+                        {kAccuracyAttribute, accuracy_settings(scene)}};
+    if (!frame.identity.empty()) image.attributes[kFrameAttribute] = frame.identity;
+    for (const auto& file : frame.files) write_image(image, file, scene.film.exposure, scene.film.view);
+  }
+
+  void note(const std::vector<std::string>& notes) {
+    for (const auto& text : notes)
+      if (noted_.insert(text).second) say("note: {}", text);
+  }
+
+  void report(const Rendered& r) {
+    for (const RareEvent& e : kRareEvents)
+      if (r.counts.events[e.counter] && e.weight == RareEvent::Weight::warning)
+        note({fmt::format("warning: {}: in this frame {} times", e.name, r.counts.events[e.counter])});
+    nan_ += r.counts.events[W_EVENT_NAN];
+  }
+
+  void make_video() {
+    const auto& files = frames_.front().files;
+    const auto exr = std::find_if(files.begin(), files.end(), [](const auto& f) { return f.extension() == ".exr"; });
+    const size_t which = exr == files.end() ? 0 : size_t(exr - files.begin());
+    Progress bar("video", args_.quiet);
+    write_video(args_.video, fps_, frames_.size(), [&](size_t k) {
+      bar.update(double(k) / double(frames_.size()));
+      const FilmScene film = scene_at(frames_[k].at).film;
+      const Image image = read_image(frames_[k].files[which]);
+      const bool display = frames_[k].files[which].extension() == ".png";
+      return VideoFrame{image.width, image.height,
+                        display_bytes(image, display ? 0 : film.exposure, display ? "srgb" : film.view)};
+    });
+    bar.finish();
+  }
+
+  const RenderArgs& args_;
+  Loaders loaders_;
+  OpenSequences sequences_;
+  FrameIdentity identity_;
+  std::vector<Frame> frames_;
+  bool aovs_ = false, blurred_ = false;
+  double fps_ = 24;
+  std::vector<Device> devices_;
+  std::unique_ptr<LiveScene> live_;
+  std::set<std::string> noted_;
+  uint64_t nan_ = 0;
+  FrameStats stats_;
+};
+
+}  // namespace
+
+int run_frames(const RenderArgs& args, const Loaders& loaders) { return Frames(args, loaders).run(); }
+
+}  // namespace wale

@@ -1,0 +1,260 @@
+// Frames of an animation by the program itself: what is kept, what is refused, and what a stop leaves.
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "cli_fixture.h"
+#include "geom/base_mesh_generators.h"
+#include "host/image.h"
+#include "tests/geom/sequence_fixtures.h"
+#include "tests/tolerances.h"
+
+namespace wale::test {
+namespace {
+
+class CliFrames : public Cli {
+ protected:
+  static BaseMesh waving(int frame, int n = 6) {
+    BaseMesh mesh = make_swatch(0.02, 0.02, n, n);
+    for (dvec3& p : mesh.position) p.z = 0.002 * std::sin(300 * p.x + frame);
+    return mesh;
+  }
+  void write_frames(int count) {
+    for (int n = 0; n < count; ++n) write_obj(waving(n), folder_ / fmt::format("c_{:02}.obj", n));
+  }
+  std::string moving_scene(const std::string& more = "", const std::string& animation = "{}") {
+    return write_scene(R"({"frames": "c_##.obj")" + more + "}", R"({"builtin": "stockinette"})",
+                       R"("gauge": {"wales": 60})", R"(, "animation": )" + animation);
+  }
+  std::vector<std::string> frames(const std::string& range, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {"render", scene_, "-o", at("f_##.exr"), "--frames", range, "--spp", "8"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  // Pixels and what the header says of them.
+  static bool same_picture(const std::filesystem::path& a, const std::filesystem::path& b) {
+    const Image x = read_image(a), y = read_image(b);
+    return x.pixels == y.pixels && x.attributes == y.attributes;
+  }
+};
+
+TEST_F(CliFrames, AreMadeOnceAndKept) {
+  write_frames(3);
+  moving_scene();
+  ASSERT_EQ(run_wale(frames("0..2", {"-o", at("f_##.png"), "--stats", at("s.json")})).status, 0);
+  const auto rows = nlohmann::json::parse(file_text(folder_ / "s.json"))["frames"];
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0]["knitted"], 1);
+  for (const int k : {1, 2}) {
+    EXPECT_EQ(rows[k]["knitted"], 0);
+    EXPECT_EQ(rows[k]["uploaded"], 0);
+    EXPECT_EQ(rows[k]["moved"], 1);
+    EXPECT_GT(rows[k]["warp_seconds"].get<double>(), 0);
+    EXPECT_GT(rows[k]["refit_seconds"].get<double>(), 0);
+  }
+  const auto written = std::filesystem::last_write_time(folder_ / "f_01.exr");
+  std::filesystem::remove(folder_ / "f_02.png");
+  const Outcome again = run_wale(frames("0..2", {"-o", at("f_##.png")}));
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_TRUE(contains(again.err, "2 of 3 frames are finished and kept"));
+  EXPECT_EQ(std::filesystem::last_write_time(folder_ / "f_01.exr"), written);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "f_02.png"));
+  EXPECT_TRUE(contains(run_wale(frames("0..2")).err, "all 3 frames are finished"));
+}
+
+// A frame is the same whichever frames were made before it.
+TEST_F(CliFrames, DoNotDependOnTheirPast) {
+  write_frames(3);
+  moving_scene();
+  ASSERT_EQ(run_wale(frames("0..2")).status, 0);
+  std::filesystem::rename(folder_ / "f_02.exr", folder_ / "whole.exr");
+  ASSERT_EQ(run_wale(frames("2")).status, 0);
+  EXPECT_TRUE(same_picture(folder_ / "whole.exr", folder_ / "f_02.exr"));
+}
+
+TEST_F(CliFrames, OfOtherSettingsAreRefusedOrMadeAgain) {
+  write_frames(2);
+  moving_scene();
+  ASSERT_EQ(run_wale(frames("0..1", {"-o", at("f_##.png")})).status, 0);
+  const std::string text = file_text(folder_ / "f_00.exr");
+  const std::string line =
+      ": not this frame of this scene with these settings, and not written over; move it, choose another name, or give "
+      "--redo";
+  for (const std::vector<std::string>& other : {std::vector<std::string>{"--spp", "9"},
+                                                {"--set", "fabrics.0.yarn.plies=2"},
+                                                {"--set", "integrator.seed=3"},
+                                                {"--preset", "draft"},
+                                                {"--size", "8x8"},
+                                                {"--set", "camera.position=[0,0,61]"}}) {
+    std::vector<std::string> words = frames("0..1");
+    if (other[0] == "--spp") words.resize(words.size() - 2);
+    words.insert(words.end(), other.begin(), other.end());
+    EXPECT_EQ(refused(words), "wale: f_00.exr" + line) << other[1];
+  }
+  write_obj(waving(9), folder_ / "c_01.obj");  // the same name, another cloth
+  EXPECT_EQ(refused(frames("0..1")), "wale: f_01.exr" + line);
+  EXPECT_EQ(refused({"render", scene_, "-o", at("f_##.png"), "--frames", "1", "--spp", "8"}), "wale: f_01.png" + line);
+  EXPECT_EQ(file_text(folder_ / "f_00.exr"), text);
+  const Outcome redone = run_wale(frames("0..1", {"--redo"}));
+  EXPECT_EQ(redone.status, 0) << redone.err;
+  EXPECT_TRUE(contains(redone.err, "1 of 2 frames are finished and kept"));
+  EXPECT_EQ(file_text(folder_ / "f_00.exr"), text);
+  std::filesystem::copy(folder_ / "f_00.exr", folder_ / "g_01.exr");  // another frame under this one's name
+  EXPECT_EQ(refused({"render", scene_, "-o", at("g_##.exr"), "--frames", "0..1", "--spp", "8"}),
+            "wale: g_01.exr" + line);
+  folder_.write("f_01.exr", "not a picture");
+  EXPECT_EQ(refused(frames("0..1")), "wale: f_01.exr" + line);
+}
+
+TEST_F(CliFrames, GoOnAfterAKill) {
+  write_frames(4);
+  moving_scene();
+  ASSERT_EQ(run_wale(frames("0..3")).status, 0);
+  for (int n = 0; n < 4; ++n)
+    std::filesystem::rename(folder_ / fmt::format("f_{:02}.exr", n), folder_ / fmt::format("whole_{:02}.exr", n));
+  TemporaryFolder printed;
+  {
+    Process process(printed.path(), frames("0..3"));
+    while (!std::filesystem::exists(folder_ / "f_01.exr") && process.seconds() < 60) usleep(1000);
+    process.signal(SIGKILL);
+    process.wait(20);
+  }
+  size_t there = 0;
+  for (int n = 0; n < 4; ++n)
+    if (std::filesystem::exists(folder_ / fmt::format("f_{:02}.exr", n))) ++there;
+  EXPECT_GE(there, 2u);
+  const Outcome rest = run_wale(frames("0..3"));
+  EXPECT_EQ(rest.status, 0) << rest.err;
+  if (there < 4) {
+    EXPECT_TRUE(contains(rest.err, fmt::format("{} of 4 frames are finished and kept", there)));
+  }
+  for (int n = 0; n < 4; ++n)
+    EXPECT_TRUE(same_picture(folder_ / fmt::format("f_{:02}.exr", n), folder_ / fmt::format("whole_{:02}.exr", n)))
+        << n;
+}
+
+TEST_F(CliFrames, AreWholeAfterAStop) {
+  write_frames(2);
+  moving_scene();
+  TemporaryFolder printed;
+  const size_t files = folder_.files();
+  Process process(printed.path(),
+                  {"render", scene_, "-o", at("f_##.exr"), "--frames", "0..1", "--size", "64x64", "--spp", "1000000"});
+  ASSERT_TRUE(process.wait_for("frames ", 120)) << process.err();
+  process.signal(SIGINT);
+  EXPECT_EQ(process.wait(60), 0) << process.err();
+  EXPECT_TRUE(contains(process.err(), "stopped: 0 of 2 frames are finished; the same command goes on from there"));
+  EXPECT_EQ(folder_.files(), files);  // none that is half a frame
+}
+
+TEST_F(CliFrames, ThatAreWrongAreNamedBeforeAnythingIsMade) {
+  write_frames(4);
+  std::filesystem::remove(folder_ / "c_02.obj");
+  moving_scene();
+  EXPECT_EQ(refused(frames("0..3")), "wale: frame 2: c_02.obj is not there; there are 0 to 3 without 2");
+  EXPECT_EQ(refused(frames("3..5")), "wale: frame 4: c_04.obj is not there; there are 0 to 3 without 2");
+  moving_scene(R"(, "missing": "hold")");
+  const Outcome held = run_wale(frames("2"));
+  EXPECT_EQ(held.status, 0) << held.err;
+  EXPECT_TRUE(contains(held.err, "c_02.obj is not there; there are 0 to 3 without 2; ")) << held.err;
+  EXPECT_TRUE(contains(held.err, "c_01.obj is held"));
+}
+
+// Files are read when their frame comes; those before it stay.
+TEST_F(CliFrames, ThatAreDamagedEndTheRenderOrAreHeld) {
+  write_frames(2);
+  write_obj(waving(2, 8), folder_ / "c_02.obj");
+  folder_.write("c_03.obj", "v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n");
+  moving_scene();
+  const Outcome topology = run_wale(frames("1..2"));
+  EXPECT_EQ(topology.status, 1);
+  ASSERT_EQ(topology.complaints().size(), 1u) << topology.err;
+  EXPECT_TRUE(
+      contains(topology.complaints()[0], "c_02.obj has 81 vertices and 128 triangles, the rest frame 49 and 72"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "f_01.exr"));
+  const Outcome nan = run_wale(frames("3"));
+  EXPECT_EQ(nan.status, 1);
+  EXPECT_TRUE(contains(nan.err, "c_03.obj"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "f_03.exr"));
+  moving_scene(R"(, "missing": "hold")");
+  std::filesystem::remove(folder_ / "f_01.exr");
+  const Outcome held = run_wale(frames("1..3"));
+  EXPECT_EQ(held.status, 0) << held.err;
+  EXPECT_EQ(read_image(folder_ / "f_03.exr").pixels, read_image(folder_ / "f_01.exr").pixels);
+}
+
+TEST_F(CliFrames, AreSaidInOneWay) {
+  write_frames(2);
+  moving_scene();
+  EXPECT_EQ(
+      refused({"render", scene_, "-o", at("f.exr"), "--frames", "0..1"}),
+      "wale: f.exr: 2 frames cannot share a name; write # for each digit of their number, for example f_####.exr");
+  EXPECT_EQ(refused({"render", scene_, "-o", at("f.exr"), "--redo"}),
+            "wale: --redo: of an animation; give --frames too, for example --frames 0..47");
+  EXPECT_EQ(refused({"render", scene_, "-o", at("nowhere/f_##.exr"), "--frames", "0..1"}),
+            "wale: nowhere/f_00.exr: the folder nowhere does not exist; make it first");
+  ASSERT_EQ(run_wale({"render", scene_, "-o", at("f.exr"), "--frames", "1", "--spp", "8"}).status, 0);
+  moving_scene("", R"({"shutter": 0.5})");
+  EXPECT_EQ(refused({"render", scene_, "-o", at("b.exr"), "--error", "0.1"}),
+            "wale: --error: a goal would not give every moment of a blurred frame its samples; valid: --spp");
+}
+
+TEST_F(CliFrames, BecomeAVideoWhereThereIsFfmpeg) {
+  write_frames(3);
+  moving_scene("", R"({"fps": 12})");
+  EXPECT_EQ(
+      refused(frames("0..2", {"--video", at("v.mp4")}), 1, {"PATH=/nonexistent"}),
+      "wale: v.mp4: videos are made by ffmpeg, which is not installed (apt-get install ffmpeg); render the frames "
+      "without --video");
+  if (!std::filesystem::exists("/usr/bin/ffmpeg")) GTEST_SKIP() << "skipped: no ffmpeg";
+  const size_t files = folder_.files();
+  const Outcome run = run_wale(frames("0..2", {"--video", at("v.mp4"), "--size", "15x16"}));
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(folder_.files(), files + 4);
+  EXPECT_GT(file_text(folder_ / "v.mp4").size(), 500u);
+  EXPECT_EQ(file_text(folder_ / "v.mp4").substr(4, 4), "ftyp");
+  std::filesystem::remove(folder_ / "v.mp4");
+  EXPECT_EQ(run_wale(frames("0..2", {"--video", at("v.mp4"), "--size", "15x16"})).status, 0);  // of frames kept
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "v.mp4"));
+  EXPECT_EQ(refused(frames("0..2", {"--video", at("v.xyz"), "--size", "15x16"})),
+            "wale: v.xyz: videos are written as .mp4, .mkv, .mov or .webm, not \".xyz\"");
+}
+
+TEST_F(CliFrames, TakeNoMoreMemoryTheMoreThereAre) {
+  folder_.write("c.bin", bin_file({waving(0), waving(1), waving(2), waving(3)}));
+  write_scene(R"({"frames": "c.bin", "missing": "hold"})", R"({"builtin": "stockinette"})", R"("gauge": {"wales": 30})",
+              R"(, "animation": {"keys": {"camera.position": [[0, [0, 0, 60]], [199, [20, 0, 60]]],
+                  "fabrics.cloth.transform.rotate": [[0, [0, 0, 0]], [199, [0, 0, 90]]]}})");
+  ASSERT_EQ(run_wale({"render", scene_, "-o", at("f_###.exr"), "--frames", "0..199", "--spp", "1", "--stats",
+                      at("s.json"), "--size", "8x8", "--quiet"})
+                .status,
+            0);
+  const auto rows = nlohmann::json::parse(file_text(folder_ / "s.json"))["frames"];
+  ASSERT_EQ(rows.size(), 200u);
+  const auto bytes = [&](size_t from, size_t to) {
+    uint64_t most = 0;
+    for (size_t k = from; k < to; ++k) most = std::max(most, rows[k]["resident_bytes"].get<uint64_t>());
+    return double(most);
+  };
+  EXPECT_LT(bytes(100, 200), bytes(20, 100) + 1e6 * tolerance::kMegabytesInHundredFrames);
+}
+
+// Every frame of shared data, at a stamp's size.
+TEST_F(CliFrames, OfARealStretchAreRenderedWhole) {
+  const char* data = std::getenv("WALE_REAL_DATA");
+  if (!data) GTEST_SKIP() << "skipped: real data not present";
+  const std::string mesh = fmt::format(R"({{"frames": "{}/cloth-anim/madypg/stock_stretchX.bin"}})", data);
+  folder_.write(
+      "real.json",
+      R"({"wale": 1, "film": {"size": [16, 16]}, "camera": {"position": [0, 0, 0.6]}, "fabrics": [{"mesh": )" + mesh +
+          R"(, "pattern": {"builtin": "stockinette"}, "gauge": {"wales": 10}}]})");
+  const Outcome run = run_wale({"render", at("real.json"), "-o", at("f_##.exr"), "--frames", "0..59", "--spp", "8",
+                                "--stats", at("s.json"), "--quiet"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto rows = nlohmann::json::parse(file_text(folder_ / "s.json"))["frames"];
+  ASSERT_EQ(rows.size(), 60u);
+  for (size_t k = 1; k < rows.size(); ++k) EXPECT_EQ(rows[k]["moved"], 1) << k;
+  EXPECT_NE(read_image(folder_ / "f_00.exr").pixels, read_image(folder_ / "f_59.exr").pixels);
+}
+
+}  // namespace
+}  // namespace wale::test
