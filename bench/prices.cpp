@@ -1,8 +1,9 @@
 // What each level of the accuracy options costs per sample: bench/results/prices.md, whose figures `wale plan` quotes.
-//   prices_bench SCENE [ROUNDS] [ROWS]
-// writes the table, and to the file ROWS what host/price_class.cpp includes. Time: CPU seconds of all kernels, all
-// threads, per sample; in every round the scene's levels one after the other, each over the scene as it is, rendered
-// right before it; median over the rounds. Compiling, knitting and uploading are not counted.
+//   prices_bench SCENE [ROUNDS] [ROWS] [OPTION]
+// writes the table, of all options or of one, and to the file ROWS (- for none) what host/price_class.cpp includes.
+// Time: CPU seconds of all kernels, all threads, per sample; in every round the scene's levels one after the other,
+// each over the scene as it is, rendered right before it; median over the rounds. Compiling, knitting and uploading are
+// not counted.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,19 +56,26 @@ struct Row {
   std::vector<double> ratios;
 };
 
-std::vector<Row> rows_of(const Device& device, const std::string& file) {
+// Loops can give way where their tile says how: both levels are measured on such a tile.
+const std::string kStrainTile = "fabrics.0.pattern={\"builtin\": \"stockinette_relaxed\"}";
+
+std::vector<Row> rows_of(const Device& device, const std::string& file, const std::string& only) {
   std::vector<Row> rows;
-  for (const AccuracyOption& option : accuracy_options())
+  for (const AccuracyOption& option : accuracy_options()) {
+    if (!only.empty() && option.name != only) continue;
     for (const AccuracyLevel& level : option.levels) {
       Row& row = rows.emplace_back();
       row.option = option.name;
       row.level = level.name;
       try {
-        row.subject = subject(device, file, level.overrides);
+        std::vector<std::string> overrides = level.overrides;
+        if (option.name == "strain") overrides.push_back(kStrainTile);
+        row.subject = subject(device, file, std::move(overrides));
       } catch (const Error& e) {
         row.refused = e.what();
       }
     }
+  }
   return rows;
 }
 
@@ -94,7 +102,7 @@ int main(int argc, char** argv) {
   const int rounds = argc > 2 ? std::max(1, std::atoi(argv[2])) : 5;
   const Device device = Device::open();
   const auto base = subject(device, file, {});
-  std::vector<Row> rows = rows_of(device, file);
+  std::vector<Row> rows = rows_of(device, file, argc > 4 ? argv[4] : "");
   measure(device, *base, rows, rounds);
   std::string figures;
   fmt::print("{}; {}, {} rounds.\n\n", device.traits().name, file, rounds);
@@ -111,6 +119,7 @@ int main(int argc, char** argv) {
                *greatest);
     figures += fmt::format("{{\"{}\", \"{}\", {:.2f}}},\n", row.option, row.level, over);
   }
-  if (argc > 3) std::ofstream(argv[3]) << "// Written by bench/prices.cpp; see bench/results/prices.md.\n" << figures;
+  if (argc > 3 && std::string(argv[3]) != "-")
+    std::ofstream(argv[3]) << "// Written by bench/prices.cpp; see bench/results/prices.md.\n" << figures;
   return 0;
 }

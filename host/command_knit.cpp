@@ -27,6 +27,9 @@ std::string reached_text(const KnittedTile& tile) {
 void refuse_if_not_reached(const KnitArgs& args, const KnittedTile& tile) {
   const std::string chart = args.chart.string();
   if (tile.stopped) user_error("{}: stopped, nothing is written: {}", chart, reached_text(tile));
+  if (tile.strain_missed)
+    user_error("{}: could not be relaxed at strains {:g} x {:g}, nothing is written: {}; leave --strains out", chart,
+               tile.strain_missed->x, tile.strain_missed->y, reached_text(tile));
   if (!tile.relaxed.converged)
     user_error("{}: could not be relaxed, nothing is written: {}; a longer loop or a finer step may do", chart,
                reached_text(tile));
@@ -48,12 +51,16 @@ std::string report_text(const KnittedTile& tile, double seconds) {
       "closest      {:.4f} yarn diameters\n"
       "forces left  {:.2g}, on the period {:.2g} (bending stiffness / diameter^2)\n"
       "strain       {:.2g} at most\n"
-      "relaxed in   {}, {} steps{}\n",
+      "relaxed in   {}, {} steps of the best start{}\n"
+      "{}",
       p.name, p.stitches.x, p.stitches.y, p.curves.size(), p.curves.size() == 1 ? "" : "s", kPerMetre * p.period.x,
       kPerMetre * p.period.y, kTenCentimetres * tile.gauge.x, kTenCentimetres * tile.gauge.y,
       kPerMetre * tile.loop_length, tile.loop_length / diameter, kPerMetre * diameter, tile.relaxed.closest,
       tile.relaxed.force, tile.relaxed.period_force, tile.relaxed.strain, duration_text(seconds), tile.relaxed.steps,
-      tile.tries > 1 ? fmt::format(", the last of {} loop lengths", tile.tries) : "");
+      tile.tries > 1 ? fmt::format(", the last of {} loop lengths", tile.tries) : "",
+      p.strains.empty() ? ""
+                        : fmt::format("strains      {} x {}, from {:g} to {:g}\n", p.strains.course.size(),
+                                      p.strains.wale.size(), p.strains.course.front(), p.strains.course.back()));
 }
 
 std::string report_json(const KnittedTile& tile, double seconds) {
@@ -72,6 +79,7 @@ std::string report_json(const KnittedTile& tile, double seconds) {
   json["period_force"] = tile.relaxed.period_force;
   json["force_wanted"] = tile.force_wanted;
   json["strain"] = tile.relaxed.strain;
+  json["energy"] = tile.relaxed.energy;
   json["steps"] = tile.relaxed.steps;
   json["loop_lengths_tried"] = tile.tries;
   json["seconds"] = seconds;

@@ -63,7 +63,7 @@ void add_knit_options(CLI::App& command, wale::KnitArgs& args) {
     return command
         .add_option_function<double>(
             name, [scale, set](const double& v) { set(v * scale); }, doc)
-        ->check(finite_number(std::string_view(name).ends_with("tension")));
+        ->check(finite_number(std::string_view(name).ends_with("tension") || std::string_view(name) == "--blocking"));
   };
   command.add_option("CHART", args.chart, "stitch chart: text, .json or .knitout")->required();
   command.add_option("-o,--output", args.output, "tile to write (.json)")->required();
@@ -78,6 +78,14 @@ void add_knit_options(CLI::App& command, wale::KnitArgs& args) {
   scaled("--courses", 10, "courses per 10 cm to reach by the loop length", [&s](double v) { s.courses = v; });
   scaled("--step", 1, "resolution: length of a segment in yarn diameters; 0.6 unless given",
          [&s](double v) { s.step = v; });
+  scaled("--blocking", 1, "pull on every row and every wale, as a swatch is pinned out; 0 unless given",
+         [&s](double v) { s.blocking = v; });
+  command.add_option("--starts", s.starts, "places to relax from: the state of least energy is kept; 4 unless given")
+      ->check(CLI::Range(1, 64));
+  command.add_flag("--strains", s.strains, "relax stretched and compressed tiles too, for scenes with strain: relaxed");
+  command.add_option("--seconds", s.max_seconds, "give up after that time; 600 unless given")
+      ->check(finite_number(false));
+  command.add_option("--threads", s.threads, "threads; all cores unless given")->check(CLI::Range(1u, 1024u));
   command.add_option("--steps", s.max_steps, "steps of the relaxation, at most")->check(CLI::Range(1, 1 << 24));
   scaled("--course-tension", 1, "pull along the rows on a side of the tile, bending stiffness / diameter^2",
          [&s](double v) { s.tension.x = v; });

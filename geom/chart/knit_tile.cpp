@@ -1,11 +1,15 @@
 #include "geom/chart/knit_tile.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "geom/chart/loop_curves.h"
 #include "geom/error.h"
 #include "geom/pattern_readers.h"
+#include "geom/relax/relax_strains.h"
+#include "geom/relax/starts.h"
 
 namespace wale {
 namespace {
@@ -28,7 +32,10 @@ void check(const KnitSettings& s) {
   if (s.loop_length != 0)
     require(s.loop_length / s.yarn_thickness, kShortest, kLongest, "a loop length", " yarn diameters", 1);
   require(s.step, 0.2, 1.5, "a resolution", " yarn diameters", 1);
-  for (const double t : {s.tension.x, s.tension.y}) require(t, 0, 10, "a tension", "", 1);
+  for (const double t : {s.tension.x, s.tension.y}) require(t, 0, 1000, "a tension", "", 1);
+  require(s.blocking, 0, 10, "a blocking", "", 1);
+  require(s.starts, 1, 64, "a number of starts", "", 1);
+  require(s.max_seconds, 1e-3, 1e6, "a time", " s", 1);
   if (s.period)
     for (const double p : {s.period->x, s.period->y})
       require(p / s.yarn_thickness, 0.5, 1e5, "a period", " yarn diameters", 1);
@@ -89,24 +96,52 @@ class Share {
   double wanted_, start_ = 0, at_ = 0;
 };
 
+unsigned threads_of(const KnitSettings& settings) {
+  return settings.threads ? settings.threads : std::max(1u, std::thread::hardware_concurrency());
+}
+
+void add_strains(KnittedTile& tile, const KnitSettings& settings, const std::function<bool(double)>& progress) {
+  const std::vector<double> strains(std::begin(kStrains), std::end(kStrains));
+  RelaxSettings relaxing;
+  relaxing.max_steps = settings.max_steps;
+  relaxing.max_seconds = settings.max_seconds;
+  RelaxedStrains found = relax_strains(tile.yarns, relaxing, strains, strains, threads_of(settings), progress);
+  tile.stopped = found.stopped;
+  if (tile.stopped) return;
+  for (size_t i = 0; i < found.reached.size() && !tile.strain_missed; ++i)
+    if (!found.reached[i].converged)
+      tile.strain_missed = dvec2(strains[i % strains.size()], strains[i / strains.size()]),
+      tile.relaxed = found.reached[i];
+  for (auto& shape : found.table.offsets)
+    for (dvec3& p : shape) p = rounded(p);
+  tile.pattern.strains = std::move(found.table);
+}
+
 KnittedTile knit_once(const StitchChart& chart, const Knit& knit, const KnitSettings& settings, double diameters,
                       const std::function<bool(double)>& progress) {
   KnittedTile out;
   PeriodicYarns yarns = loop_curves(knit, {0.5 * settings.yarn_thickness, diameters, settings.step});
   RelaxSettings relaxing;
-  relaxing.tension = settings.tension;
+  relaxing.tension = settings.tension + settings.blocking * dvec2(knit.rows, knit.wales);
   relaxing.max_steps = settings.max_steps;
+  relaxing.max_seconds = settings.max_seconds;
   if (settings.period) {
     const dvec2 stretch = *settings.period / yarns.period;
     for (dvec3& p : yarns.points) p *= dvec3(stretch, 1);
     yarns.period = *settings.period;
     relaxing.free_period_x = relaxing.free_period_y = false;
   }
-  Share share(relaxing.force_tolerance);
-  out.relaxed = relax(yarns, relaxing, [&](double thickness, double force) {
-    out.stopped = progress && !progress(share(thickness, force));
-    return !out.stopped;
-  });
+  std::vector<Share> shares(size_t(settings.starts), Share(relaxing.force_tolerance));
+  std::vector<double> done(shares.size(), 0);
+  out.relaxed = relax_from_starts(yarns, relaxing, settings.starts, threads_of(settings),
+                                  [&](int start, double thickness, double f) {
+                                    done[size_t(start)] = shares[size_t(start)](thickness, f);
+                                    double sum = 0;
+                                    for (const double d : done) sum += d;
+                                    out.stopped = out.stopped || (progress && !progress(sum / double(done.size())));
+                                    return !out.stopped;
+                                  });
+  if (out.stopped) out.relaxed.converged = false;
   out.loop_length = diameters * settings.yarn_thickness;
   out.force_wanted = relaxing.force_tolerance;
   out.gauge = dvec2(knit.wales, knit.rows) / yarns.period;
@@ -115,7 +150,10 @@ KnittedTile knit_once(const StitchChart& chart, const Knit& knit, const KnitSett
                           {"loop_length", out.loop_length},
                           {"step", settings.step},
                           {"course_tension", settings.tension.x},
-                          {"wale_tension", settings.tension.y}};
+                          {"wale_tension", settings.tension.y},
+                          {"blocking", settings.blocking},
+                          {"starts", settings.starts}};
+  out.yarns = std::move(yarns);
   if (settings.period) {
     out.pattern.settings.emplace_back("period_x", settings.period->x);
     out.pattern.settings.emplace_back("period_y", settings.period->y);
@@ -123,39 +161,67 @@ KnittedTile knit_once(const StitchChart& chart, const Knit& knit, const KnitSett
   return out;
 }
 
-// A stitch grows with its loop, nearly in proportion; where it jams the loop was too short.
+// Where a gauge may be reached, from loop lengths that were tried: between the nearest ones on both sides of it, else
+// on along the slope of the two nearest, else in proportion, as a stitch grows with its loop.
+double next_length(std::vector<dvec2> tried, double wanted) {  // (loop length, gauge)
+  constexpr double kFlattest = -0.15, kSteepest = -2, kFarthest = 0.5;
+  for (dvec2& t : tried) t = {std::log(t.x), std::log(t.y / wanted)};
+  std::sort(tried.begin(), tried.end(), [](const dvec2& a, const dvec2& b) { return std::abs(a.y) < std::abs(b.y); });
+  const dvec2 near = tried[0];
+  for (const dvec2& t : tried)
+    if (t.y * near.y < 0) return std::exp(near.x - near.y * (t.x - near.x) / (t.y - near.y));
+  const double slope = tried.size() > 1 ? (tried[1].y - near.y) / (tried[1].x - near.x) : -1;
+  return std::exp(near.x - std::clamp(near.y / std::clamp(slope, kSteepest, kFlattest), -kFarthest, kFarthest));
+}
+
+// Where a loop jams it was too short. That is found out in about as many steps as a sound tile takes, and not in all
+// that are allowed; from one start, as the search is for the loop's length.
 KnittedTile knit_to_gauge(const StitchChart& chart, const Knit& knit, const KnitSettings& settings,
                           const std::function<bool(double)>& progress) {
-  constexpr int kTries = 8;
+  constexpr int kTries = 10;
+  // Yarn that is stretched by more has been jammed into a shape that is not that of its loop length.
+  constexpr double kJammed = 0.03, kBracket = 1.02;
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration<double>(settings.max_seconds);
   const int axis = settings.wales ? 0 : 1;
   const double wanted = settings.wales ? *settings.wales : *settings.courses;
-  double length = kPlainLoop, jams = 0;
-  std::optional<KnittedTile> best;
+  const auto sound = [](const KnittedTile& t) { return t.relaxed.converged && t.relaxed.strain <= kJammed; };
   const auto miss = [&](const KnittedTile& tile) { return std::abs(tile.gauge[axis] / wanted - 1); };
+  double length = kPlainLoop, jams = 0;
+  std::vector<dvec2> tried;
+  std::optional<KnittedTile> best;
+  KnitSettings rest = settings;
+  rest.starts = 1;
   int tries = 0;
   while (tries < kTries) {
-    KnittedTile tile = knit_once(chart, knit, settings, length,
+    if (tries > 0) rest.max_seconds = std::chrono::duration<double>(end - Clock::now()).count();
+    if (rest.max_seconds <= 0) break;
+    KnittedTile tile = knit_once(chart, knit, rest, length,
                                  [&](double share) { return !progress || progress((tries + share) / kTries); });
     ++tries;
     if (tile.stopped) {
       tile.tries = tries;
       return tile;
     }
-    double next = length * tile.gauge[axis] / wanted;
-    if (!tile.relaxed.converged) {
+    double next = 1.3 * length;
+    if (!sound(tile)) {
       jams = std::max(jams, length);
-      next = best ? 0.5 * (length + best->loop_length / settings.yarn_thickness) : 1.3 * length;
+      if (!tried.empty()) next = 0.5 * (length + best->loop_length / settings.yarn_thickness);
       if (!best) best = std::move(tile);
-    } else if (!best || !best->relaxed.converged || miss(tile) < miss(*best)) {
-      best = std::move(tile);
+    } else {
+      rest.max_steps = std::min(settings.max_steps, 2 * tile.relaxed.steps + 100);
+      tried.emplace_back(length, tile.gauge[axis]);
+      if (tried.size() == 1 || miss(tile) < miss(*best)) best = std::move(tile);
       if (miss(*best) <= kGaugeTolerance) break;
+      next = next_length(tried, wanted);
     }
     next = std::clamp(next, std::max(kShortest, jams), kLongest);
-    if (std::abs(next / length - 1) < 1e-4) break;
+    // Between a loop that jams and one that is nearly as short there is nothing left to find.
+    if (std::abs(next / length - 1) < 1e-4 || (!tried.empty() && next < kBracket * jams)) break;
     length = next;
   }
   best->tries = tries;
-  best->gauge_reached = miss(*best) <= kGaugeTolerance;
+  best->gauge_reached = sound(*best) && miss(*best) <= kGaugeTolerance;
   return std::move(*best);
 }
 
@@ -163,11 +229,17 @@ KnittedTile knit_to_gauge(const StitchChart& chart, const Knit& knit, const Knit
 
 KnittedTile knit_tile(const StitchChart& chart, const KnitSettings& settings,
                       const std::function<bool(double)>& progress) {
+  constexpr double kTileShare = 0.3;  // of the work, where strains follow
   check(settings);
   const Knit knit = knit_chart(chart);
-  if (settings.wales || settings.courses) return knit_to_gauge(chart, knit, settings, progress);
+  const auto first = [&](double share) { return !progress || progress(settings.strains ? kTileShare * share : share); };
   const double diameters = settings.loop_length > 0 ? settings.loop_length / settings.yarn_thickness : kPlainLoop;
-  return knit_once(chart, knit, settings, diameters, progress);
+  KnittedTile tile = settings.wales || settings.courses ? knit_to_gauge(chart, knit, settings, first)
+                                                        : knit_once(chart, knit, settings, diameters, first);
+  if (settings.strains && tile.relaxed.converged && tile.gauge_reached && !tile.stopped)
+    add_strains(tile, settings,
+                [&](double share) { return !progress || progress(kTileShare + (1 - kTileShare) * share); });
+  return tile;
 }
 
 }  // namespace wale

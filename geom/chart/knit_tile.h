@@ -8,13 +8,24 @@
 
 namespace wale {
 
+/// Starts that find states of nearly the least energy in tiles of a few stitches (bench/results/relaxation.md).
+constexpr int kStarts = 4;
+
+/// Strains along course and wale at which a tile is relaxed for its table.
+constexpr double kStrains[] = {-0.2, 0, 0.25, 0.5, 1};
+
 /// How a chart is knitted. Lengths in metres.
 struct KnitSettings {
-  double yarn_thickness = 1e-3;          ///< diameter
-  double loop_length = 0;                ///< yarn in one stitch; 0: kPlainLoop yarn diameters
-  double step = 0.6;                     ///< length of a segment, in yarn diameters
-  int max_steps = RelaxSettings().max_steps;  ///< of the relaxation
+  double yarn_thickness = 1e-3;                      ///< diameter
+  double loop_length = 0;                            ///< yarn in one stitch; 0: kPlainLoop yarn diameters
+  double step = 0.6;                                 ///< length of a segment, in yarn diameters
+  int max_steps = RelaxSettings().max_steps;         ///< of the relaxation
+  double max_seconds = RelaxSettings().max_seconds;  ///< of all relaxations together
+  int starts = kStarts;                              ///< places to relax from: the state of least energy is kept
+  unsigned threads = 0;                  ///< 0: as many as the machine has; the tile does not depend on them
   dvec2 tension{0, 0};                   ///< along the course and the wale: RelaxSettings::tension
+  bool strains = false;                  ///< relaxed at kStrains too: Pattern::strains
+  double blocking = 0;                   ///< pull on every row and on every wale, beside the tension, B / D^2
   std::optional<dvec2> period;           ///< of the tile, held; else it is free
   std::optional<double> wales, courses;  ///< gauge to reach by the loop length, per metre; at most one of them
 };
@@ -28,10 +39,12 @@ constexpr double kGaugeTolerance = 0.005;
 struct KnittedTile {
   Pattern pattern;
   Relaxed relaxed;
-  double loop_length = 0;   ///< metres
-  double force_wanted = 0;  ///< where Relaxed::force and period_force end
-  dvec2 gauge{0, 0};        ///< wales and courses per metre
-  int tries = 1;            ///< loop lengths that were tried for the gauge
+  double loop_length = 0;              ///< metres
+  double force_wanted = 0;             ///< where Relaxed::force and period_force end
+  dvec2 gauge{0, 0};                   ///< wales and courses per metre
+  PeriodicYarns yarns;                 ///< as relaxed: the pattern's are centred and rounded
+  std::optional<dvec2> strain_missed;  ///< the first strain at which the tile could not be relaxed
+  int tries = 1;                       ///< loop lengths that were tried for the gauge
   bool stopped = false, gauge_reached = true;
 };
 

@@ -121,7 +121,7 @@ bool Descent::step() {
       const double after = energy_of(next);
       if (!(after <= energy_ + 1e-4 * share * slope)) continue;
       if (halving > 1) damping_ *= 4;
-      if (halving == 0) damping_ = std::max(0.2 * damping_, kLeastDamping);
+      if (halving == 0 && attempt == 0) damping_ = std::max(0.2 * damping_, kLeastDamping);
       yarns_.points = std::move(next.points);
       yarns_.period = next.period;
       return true;

@@ -1,9 +1,9 @@
 #pragma once
 #include <array>
-#include <memory>
 #include <optional>
 #include <vector>
 
+#include "geom/relax/front_factors.h"
 #include "geom/relax/local_term.h"
 
 namespace wale {
@@ -19,7 +19,6 @@ struct TileStep {
 class NewtonSystem {
  public:
   explicit NewtonSystem(size_t points);
-  ~NewtonSystem();
   /// Begins anew, all zero. `terms` will be added: their pairs of points get a place in the matrix; where all have one
   /// from before, its pattern and symbolic factorisation are kept. Else `spare` points get places too: groups that may
   /// be in terms soon.
@@ -34,19 +33,16 @@ class NewtonSystem {
   double model(const TileStep& step) const;
 
  private:
-  struct Factors;
   void rebuild(const std::vector<LocalTerm>& terms, const std::vector<std::array<uint32_t, 4>>& spare);
   bool has(uint32_t row, uint32_t column) const;
-  double* block(uint32_t row, uint32_t column);
 
   size_t count_;
   std::vector<dvec3> gradient_;
   dvec2 strain_gradient_{0, 0};
   std::vector<dvec3> border_[2];
   double strain_hessian_[3] = {};
-  // Blocks of a column of points, rows ascending, the diagonal one first.
-  std::vector<std::vector<uint32_t>> rows_;
-  std::unique_ptr<Factors> factors_;
+  BlockMatrix hessian_;
+  FrontFactors factors_;
 };
 
 }  // namespace wale

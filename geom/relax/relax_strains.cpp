@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <span>
 
 #include "geom/error.h"
@@ -51,7 +52,7 @@ bool RelaxedStrains::converged() const {
 }
 
 RelaxedStrains relax_strains(const PeriodicYarns& relaxed, const RelaxSettings& settings, std::vector<double> course,
-                             std::vector<double> wale, unsigned threads) {
+                             std::vector<double> wale, unsigned threads, const std::function<bool(double)>& progress) {
   const size_t zero_course = zero_of(course, "course"), zero_wale = zero_of(wale, "wale");
   const size_t columns = course.size();
   RelaxedStrains out;
@@ -62,15 +63,26 @@ RelaxedStrains relax_strains(const PeriodicYarns& relaxed, const RelaxSettings& 
   held.closest = kCrushed;
   held.contact_stiffness = kCrushStiffness;
   const auto node = [&](size_t ic, size_t iw) { return iw * columns + ic; };
+  std::mutex telling;
+  size_t done = 0;
+  const auto go_on = [&](double, double) {
+    const std::lock_guard lock(telling);
+    out.stopped = out.stopped || (progress && !progress(double(done) / double(shapes.size())));
+    return !out.stopped;
+  };
   const auto go = [&](size_t ic, size_t iw, size_t from) {
+    if (!go_on(0, 0)) return;
     PeriodicYarns& shape = shapes[node(ic, iw)] = shapes[from];
     const dvec2 strain(course[ic], wale[iw]);
     strain_tile(shape, relaxed.period * (1.0 + strain), settings.neighbours);
-    out.reached[node(ic, iw)] = relax(shape, held);
+    out.reached[node(ic, iw)] = relax(shape, held, go_on);
+    const std::lock_guard lock(telling);
+    ++done;
   };
   shapes[node(zero_course, zero_wale)] = relaxed;
   Relaxed& middle = out.reached[node(zero_course, zero_wale)];
-  middle = relax(shapes[node(zero_course, zero_wale)], held);
+  middle = relax(shapes[node(zero_course, zero_wale)], held, go_on);
+  ++done;
   const PeriodicYarns base = shapes[node(zero_course, zero_wale)];
   // Along the course at wale strain 0, then every column from there.
   for (size_t ic = zero_course + 1; ic < columns; ++ic) go(ic, zero_wale, node(ic - 1, zero_wale));
@@ -81,6 +93,7 @@ RelaxedStrains relax_strains(const PeriodicYarns& relaxed, const RelaxSettings& 
     for (size_t iw = zero_wale + 1; iw < wale.size(); ++iw) go(ic, iw, node(ic, iw - 1));
     for (size_t iw = zero_wale; iw-- > 0;) go(ic, iw, node(ic, iw + 1));
   });
+  if (out.stopped) return out;
   for (size_t iw = 0; iw < wale.size(); ++iw)
     for (size_t ic = 0; ic < columns; ++ic) {
       const PeriodicYarns& shape = shapes[node(ic, iw)];

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <vector>
 
 #include "geom/relax/relaxation.h"
@@ -10,6 +11,7 @@ namespace wale {
 struct RelaxedStrains {
   StrainTable table;
   std::vector<Relaxed> reached;
+  bool stopped = false;
   bool converged() const;
 };
 
@@ -17,8 +19,10 @@ struct RelaxedStrains {
 /// a user error). Each shape starts from that of the strain beside it nearer 0, moved as the cloth is, so that the yarn
 /// keeps its way through the loops. Offsets have no mean, as a shift of the tile means nothing; per yarn there are its
 /// points and the first one again, as in the curves of a Pattern. The columns run on `threads` threads; the result does
-/// not depend on their number.
+/// not depend on their number. `progress` gets the share of shapes that are done, one call at a time, on every step;
+/// false stops, and shapes are then not all there.
 RelaxedStrains relax_strains(const PeriodicYarns& relaxed, const RelaxSettings& settings, std::vector<double> course,
-                             std::vector<double> wale, unsigned threads);
+                             std::vector<double> wale, unsigned threads,
+                             const std::function<bool(double)>& progress = {});
 
 }  // namespace wale

@@ -57,6 +57,7 @@ class Swelling {
     }
     out_.converged = share == 1 && hardness == hard_ && out_.force < tolerance && out_.period_force < tolerance;
     out_.strain = work_.strain();
+    out_.energy = work_.energy();
   }
 
  private:

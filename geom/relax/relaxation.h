@@ -30,6 +30,7 @@ struct Relaxed {
   double period_force = 0;     ///< and on the period
   double closest = 0;          ///< of centrelines that are no neighbours, D
   double strain = 0;           ///< largest of a segment
+  double energy = 0;           ///< less the work of the tension, B / D
   double thickness_share = 0;  ///< of the yarn's diameter that the relaxation came to; 1 unless it failed
 };
 

@@ -10,8 +10,21 @@ shift || true
 names=("$@")
 ((${#names[@]})) || mapfile -t names < <(cd "$here" && ls ./*.chart | sed 's|^\./||; s|\.chart$||')
 mkdir -p "$reports"
-# Loops of other lengths than 13.2 yarn diameters, where the stitch asks for them.
-declare -A options=([seed]="--loop-diameters 15" [moss]="--loop-diameters 15")
+# Loops of other lengths than 13.2 yarn diameters, where the stitch asks for them; blocking, where the cloth would gather or
+# buckle; and how many starts, where 4 would take long or more find a lower state.
+declare -A options=(
+  [basketweave]="--loop-diameters 14 --blocking 1 --starts 2"
+  [cable_4]="--starts 2"
+  [cable_6]="--starts 1"
+  [eyelet]="--loop-diameters 15 --blocking 0.4 --starts 2"
+  [honeycomb]="--loop-diameters 15 --course-tension 1.6 --wale-tension 6 --starts 2"
+  [mosaic]="--loop-diameters 15 --blocking 1 --starts 8"
+  [moss]="--loop-diameters 15 --blocking 0.5 --starts 8"
+  [seed]="--loop-diameters 15 --blocking 0.5 --starts 16"
+  [stranded]="--loop-diameters 15 --blocking 1 --starts 2"
+  [stockinette_relaxed]="--strains"
+  [waffle]="--loop-diameters 14 --blocking 0.5 --starts 8"
+)
 failed=0
 for name in "${names[@]}"; do
   # shellcheck disable=SC2086

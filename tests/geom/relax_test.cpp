@@ -39,7 +39,8 @@ const Tile& relaxed(const char* chart) {
 }
 
 // Signed crossings, seen from the front, of yarn b over yarn a less those under it, in all tiles: twice their linking
-// number on the torus. It cannot change while yarns move without passing.
+// number on the torus. It cannot change while yarns move without passing. Of a yarn with itself only the courses of other
+// tiles count: how often it crosses itself is no invariant, as a kink turns with it.
 int crossings_over(const PeriodicYarns& y, uint32_t a, uint32_t b) {
   const std::vector<YarnSegment> segments = segments_of(y);
   int sum = 0;
@@ -49,6 +50,7 @@ int crossings_over(const PeriodicYarns& y, uint32_t a, uint32_t b) {
       if (f.yarn != a || g.yarn != b) continue;
       for (int ix = -3; ix <= 3; ++ix)
         for (int iy = -3; iy <= 3; ++iy) {
+          if (a == b && iy == 0) continue;
           const dvec3 image(dvec2(ix, iy) * y.period, 0), p = y.points[f.a], d = end(f) - p, q = y.points[g.a] + image,
                                                           e = end(g) + image - q;
           const double det = d.x * -e.y + e.x * d.y;

@@ -1,4 +1,5 @@
 // `wale knit`: a tile beside its report, the gauge, and what it leaves behind when it fails or is stopped.
+#include <chrono>
 #include <csignal>
 #include <nlohmann/json.hpp>
 
@@ -58,6 +59,56 @@ TEST_F(CliKnit, LoopLengthFollowsFromTheGauge) {
   EXPECT_NEAR(told["wales_per_10cm"].get<double>(), 17, 17 * 0.0051);
   EXPECT_NEAR(read_pattern(folder_ / "tile.json").period.x, 0.1 / 17, 0.1 / 17 * 0.0051);
   EXPECT_GT(told["loop_lengths_tried"].get<int>(), 1);
+}
+
+TEST_F(CliKnit, AGaugeThatNoLoopGivesEndsSoon) {
+  const auto start = std::chrono::steady_clock::now();
+  for (const char* asked : {"--wales", "--courses"}) {
+    const std::string line = knit_refused(chart("k\n"), {asked, "150", "--quiet"});
+    EXPECT_TRUE(contains(line, "no loop length gives this gauge; the nearest is 26.")) << line;
+    EXPECT_TRUE(contains(line, "--loop 12.")) << line << ": shorter ones fit only where the yarn stretches";
+  }
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 10) << "0.5 s idle";
+}
+
+TEST_F(CliKnit, TimeIsLimited) {
+  const std::string file = chart("p2 k4 p2\np2 c4f p2\n");
+  EXPECT_TRUE(
+      contains(knit_refused(file, {"--seconds", "0.02", "--quiet"}), "could not be relaxed, nothing is written"));
+  EXPECT_TRUE(contains(knit_refused(file, {"--seconds", "0.02", "--wales", "60", "--quiet"}), "nothing is written"));
+}
+
+// Tile and table of strains, several starts.
+TEST_F(CliKnit, SameBytesWithAnyNumberOfThreads) {
+  const std::string file = chart("kp\npk\n");
+  for (const char* threads : {"1", "2", "5"})
+    ASSERT_EQ(knit(file, std::string(threads) + ".json", {"--strains", "--threads", threads, "--loop", "15"}).status,
+              0);
+  EXPECT_EQ(file_text(folder_ / "1.json"), file_text(folder_ / "2.json"));
+  EXPECT_EQ(file_text(folder_ / "1.json"), file_text(folder_ / "5.json"));
+}
+
+TEST_F(CliKnit, StrainsOpenTheLoops) {
+  const Outcome run = knit(chart("k\n"), "tile.json", {"--strains"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_TRUE(contains(run.out, "strains      5 x 5, from -0.2 to 1"));
+  EXPECT_TRUE(contains(run.err, "knit 100 %")) << run.err;
+  const Pattern tile = read_pattern(folder_ / "tile.json");
+  const StrainTable& table = tile.strains;
+  ASSERT_EQ(table.course, (std::vector<double>{-0.2, 0, 0.25, 0.5, 1}));
+  ASSERT_EQ(table.wale, table.course);
+  const std::vector<dvec3>& q = tile.curves[0].points;
+  const auto length = [&](size_t course, size_t wale) {
+    const std::vector<dvec3>& g = table.offsets[wale * 5 + course];
+    double sum = 0;
+    for (size_t i = 1; i < q.size(); ++i)
+      sum +=
+          glm::length((q[i] - q[i - 1] + g[i] - g[i - 1]) * dvec3(1 + table.course[course], 1 + table.wale[wale], 1));
+    return sum;
+  };
+  // MADYPG's table of stockinette says 0.0725; affine would be more than 0.2.
+  EXPECT_NEAR(length(3, 1) / length(1, 1) - 1, 0.0725, 0.1 * 0.0725);
+  EXPECT_GT(length(0, 1) / length(1, 1) - 1, -0.01) << "cloth is compressed, yarn is not";
 }
 
 TEST_F(CliKnit, PeriodIsHeld) {
