@@ -36,6 +36,14 @@ void AtomicFile::commit() {
   committed_ = true;
 }
 
+bool AtomicFile::commit_if_new() {
+  std::error_code error;
+  fs::create_hard_link(temporary_, file_, error);  // unlike a rename it takes no other file's place
+  if (error == std::errc::file_exists) return false;
+  if (error) user_error("{}: cannot be written: {}", file_.string(), error.message());
+  return true;
+}
+
 void write_text_file(const fs::path& file, const std::string& text) {
   AtomicFile out(file);
   std::ofstream stream(out.temporary(), std::ios::binary);

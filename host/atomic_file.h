@@ -18,6 +18,8 @@ class AtomicFile {
   const std::filesystem::path& temporary() const { return temporary_; }
   /// Renames into place. Throws a user error when the disk refuses.
   void commit();
+  /// The same, but false, and nothing done, where a file of that name has come up.
+  bool commit_if_new();
 
  private:
   std::filesystem::path file_, temporary_;
