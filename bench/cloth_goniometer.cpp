@@ -42,7 +42,7 @@ Measured measure(const Device& device, const Scene& scene, bool above, int spp) 
   const Loaders loaders{[](const auto& file) { return read_mesh(file); },
                         [&](const auto& file) { return file == "sky" ? half_sky(above) : Image{}; }};
   const World world = build_world(scene, loaders);
-  const SceneDevice on_device(device, world, local_stage(scene.integrator), leaf_form(scene.integrator));
+  const SceneDevice on_device(device, world);
   RenderOptions options;
   options.spp = spp;
   options.aovs = true;

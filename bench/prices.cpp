@@ -31,7 +31,7 @@ struct Subject {
       : scene(std::move(s)),
         world(build_world(
             scene, {[](const auto& f) { return read_mesh(f); }, [](const auto& f) { return read_image(f, true); }})),
-        on_device(device, world, local_stage(scene.integrator), leaf_form(scene.integrator)) {}
+        on_device(device, world) {}
 
   double seconds_per_sample(const Device& device) const {
     RenderOptions options;

@@ -60,8 +60,7 @@ Features all_or_nothing(bool all) { return all ? Features::everything() : Featur
 int compile_once(const std::string& file, bool all) {
   const Device device = Device::open();
   const Loaded loaded(file);
-  const SceneDevice scene(device, loaded.world, local_stage(loaded.scene.integrator),
-                          leaf_form(loaded.scene.integrator));
+  const SceneDevice scene(device, loaded.world);
   double seconds[2];
   for (double& s : seconds) {
     const std::clock_t start = std::clock();
@@ -140,8 +139,7 @@ size_t different_values(const Image& a, const Image& b) {
 }
 
 Times time_both(const Device& device, const Loaded& loaded, const Features& also, int repeats) {
-  const SceneDevice scene(device, loaded.world, local_stage(loaded.scene.integrator),
-                          leaf_form(loaded.scene.integrator));
+  const SceneDevice scene(device, loaded.world);
   Times out;
   for (int k = 0; k < repeats + 1; ++k) {
     std::array<Rendered, 2> r;

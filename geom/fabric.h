@@ -17,6 +17,8 @@ struct FabricScale {
   enum class Kind { repeats, gauge, uv_metres } kind = Kind::repeats;
   dvec2 repeats{1, 1};  ///< tiles across u and v in [0,1]
   dvec2 gauge{0, 0};    ///< wales and courses per metre; a zero follows from the tile's aspect
+
+  bool operator==(const FabricScale&) const = default;
 };
 
 /// How much of a ply is shown: nothing but the tube; as KNIT21, or maps of the fibres on it; the fibres themselves.
@@ -47,6 +49,8 @@ struct FabricSpec {
   LoopStrain strain = LoopStrain::affine;
   Storage storage = Storage::automatic;
   int lattice = 0;  ///< cells along a tile's side of a lattice that takes the mesh's place in the warp; 0 = none
+
+  bool operator==(const FabricSpec&) const = default;
 };
 
 /// Largest distance of an explicit fibre's polyline from its curve, fibre radii.

@@ -15,6 +15,8 @@ struct FibreRecipe {
   double migration_min = 1;   ///< fibres wander between this share of their distance and all of it; 1 = they do not
   double migration_rate = 1.5;  ///< migrations per turn of the bundle
   uint32_t seed = 1;
+
+  bool operator==(const FibreRecipe&) const = default;
 };
 
 /// Fibres of one cross-section, all of one radius. Fibre k lies at azimuth angle + theta about the ply's axis, seen

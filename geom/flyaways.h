@@ -15,6 +15,8 @@ struct FlyawaySpec {
   double radius = 0;            ///< metres; 0 = that of the ply's fibres
 
   bool any() const { return hairs > 0 || loops > 0; }
+
+  bool operator==(const FlyawaySpec&) const = default;
 };
 
 /// A piece of a ply: at least two samples of its axis, in order. Lengths in metres from the start of the full ply.

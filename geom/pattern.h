@@ -46,6 +46,8 @@ struct PatternHints {
   double yarn_radius = 0;
   ivec2 stitches{0, 0};
   double unit = 0;  ///< metres per file unit (Leaf text, BCC)
+
+  bool operator==(const PatternHints&) const = default;
 };
 
 /// Reads a tile by its suffix: .pyp, .txt (Leaf et al. 2018), .bcc, .json (Wale). Throws a user error naming the file

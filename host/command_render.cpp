@@ -47,11 +47,10 @@ class Devices {
       const Features features = features_of(traits, world, integrator, options);
       require_memory(device, memory_needs(world, features, pool_of(traits, integrator, options), traits));
     }
-    const LocalStage stage = local_stage(integrator);
     std::vector<std::future<std::unique_ptr<SceneDevice>>> scenes;
     for (const Device& device : open_)
       scenes.push_back(std::async(open_.size() > 1 ? std::launch::async : std::launch::deferred, [&] {
-        return std::make_unique<SceneDevice>(device, world, stage, leaf_form(integrator));
+        return std::make_unique<SceneDevice>(device, world);
       }));
     for (auto& scene : scenes) scenes_.push_back(scene.get());
     for (size_t d = 0; d < open_.size(); ++d) list_.push_back({&open_[d], scenes_[d].get()});

@@ -88,7 +88,7 @@ int run_plan(const SceneArgs& args, const std::filesystem::path& json, const Loa
   const Scene scene = read_scene(args);
   const Device device = Device::open(one_device_number(args.device));
   const World world = world_of(scene, loaders, args.quiet);
-  const SceneDevice on_device(device, world, local_stage(scene.integrator), leaf_form(scene.integrator));
+  const SceneDevice on_device(device, world);
   const Plan plan = plan_render(device, scene, world, on_device, args.also);
   deliver(json, plan_json(plan), plan_text(plan));
   return 0;

@@ -6,13 +6,11 @@
 
 #include "host/fabric_warp.h"
 #include "host/lattice_fabrics.h"
+#include "host/local_stage.h"
 #include "host/ply_tree.h"
 #include "shared/wale_types.h"
 
 namespace wale {
-
-/// How the plies that a ray meets are found: W_LOCAL_STAGE of the kernels.
-enum class LocalStage { exact = 0, cell = 1, ring = 2 };
 
 /// All fabrics of a scene on the device, warped, packed and with their tree. Vertices, cells, triangles and grids of
 /// the fabrics are numbered one fabric after the other; fabric f's vertices start at first_vertex[f].

@@ -38,10 +38,16 @@ FilmDevice::FilmDevice(const Device& device, int width, int height, bool aovs)
     const size_t count = size_t(std::min<uint64_t>(band_pixels_, pixels - first));
     Band& band = bands_.emplace_back();
     band.radiance = Buffer<w_float4>(device, count * kScrambles);
-    band.radiance.fill(device, w_float4{0, 0, 0, 0});
     band.aov = Buffer<w_float4>(device, aovs ? count * kFeatures : 0);
-    band.aov.fill(device, w_float4{0, 0, 0, 0});
     band.ply = Buffer<uint32_t>(device, aovs ? count : 0);
+  }
+  clear(device);
+}
+
+void FilmDevice::clear(const Device& device) {
+  for (Band& band : bands_) {
+    band.radiance.fill(device, w_float4{0, 0, 0, 0});
+    band.aov.fill(device, w_float4{0, 0, 0, 0});
     band.ply.fill(device, W_NONE);
   }
   device.queue().finish();

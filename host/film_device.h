@@ -28,6 +28,9 @@ class FilmDevice {
   /// Everything starts at zero. Throws a user error when there are more pixels than numbers for them.
   FilmDevice(const Device& device, int width, int height, bool aovs);
 
+  /// Everything is zero again.
+  void clear(const Device& device);
+
   /// Part of a run of pixels that lies in one band.
   struct Piece {
     size_t band;

@@ -3,10 +3,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <exception>
 #include <mutex>
-#include <numeric>
 #include <thread>
 
 #include "geom/error.h"
@@ -68,57 +68,81 @@ void refuse_if_too_large(const BaseMesh& mesh, const Pattern& pattern, const Fab
         spec.name, segments, segments * bytes * 1e-9, memory * 1e-9);
 }
 
-void knit(const Scene& scene, const FabricScene& fabric, const Pattern& pattern, const std::string& obstacle,
-          BaseMesh mesh, KnittedFabric& out) {
-  require_uv(mesh);
-  if (const size_t joined = join_duplicate_vertices(mesh))
-    out.notes.push_back(fmt::format("fabric \"{}\": {} vertices in the place of another one are joined to it",
-                                    fabric.spec.name, joined));
-  transform_mesh(mesh, fabric.transform);
-  refuse_if_out_of_reach(mesh, fabric.spec.name);
-  out.yarn_colors = yarn_colors(fabric, pattern);
+FabricSpec resolved(const Scene& scene, const FabricScene& fabric) {
   const PlyAppearance& yarn = scene.materials.at(size_t(fabric.material)).yarn;
   FabricSpec spec = fabric.spec;
   spec.fibres = fibre_recipe(yarn);
   spec.places = colors_need_places(yarn, fabric.color_image);
   spec.cell_lists = local_stage(scene.integrator) != LocalStage::exact;
-  const StorageChoice choice = choose_storage(mesh, pattern, spec, obstacle);
+  return spec;
+}
+
+void knit(const Pattern& pattern, BaseMesh mesh, KnittedFabric& out) {
+  require_uv(mesh);
+  FabricSpec spec = out.knitting.order.spec;
+  std::vector<std::string>& notes = out.knitting.notes;
+  if (const size_t joined = join_duplicate_vertices(mesh))
+    notes.push_back(
+        fmt::format("fabric \"{}\": {} vertices in the place of another one are joined to it", spec.name, joined));
+  transform_mesh(mesh, out.knitting.order.transform);
+  refuse_if_out_of_reach(mesh, spec.name);
+  const StorageChoice choice = choose_storage(mesh, pattern, spec, out.knitting.order.obstacle);
   spec.storage = choice.storage;
   refuse_if_too_large(mesh, pattern, spec);
   out.mesh_report = validate(mesh);
   part_opposed_seams(mesh);
   out.fabric =
       choice.lattice ? knit_lattice(std::move(mesh), pattern, spec) : knit_fabric(std::move(mesh), pattern, spec);
-  if (choice.lattice) out.notes.push_back(lattice_note(out.fabric, choice));
+  if (choice.lattice) notes.push_back(lattice_note(out.fabric, choice));
+}
+
+std::optional<size_t> find_same(const World* previous, const KnitOrder& order,
+                                const std::vector<KnittedFabric>& taken) {
+  if (!previous) return {};
+  for (size_t i = 0; i < previous->fabrics.size(); ++i)
+    if (serves(previous->knittings[i].order, previous->fabrics[i], order) &&
+        std::none_of(taken.begin(), taken.end(), [&](const KnittedFabric& other) { return other.of_previous == i; }))
+      return i;
+  return {};
 }
 
 }  // namespace
 
 std::vector<KnittedFabric> knit_fabrics(const Scene& scene, const Loaders& loaders,
-                                        const std::function<void(double)>& progress) {
+                                        const std::function<void(double)>& progress, const World* previous) {
+  static std::atomic<uint64_t> knitted_so_far{0};
   const size_t count = scene.fabrics.size();
-  // One after the other: readers of meshes keep a state.
-  std::vector<BaseMesh> meshes;
-  for (const FabricScene& fabric : scene.fabrics) meshes.push_back(load_mesh(fabric.mesh, loaders));
   std::vector<Pattern> patterns;
   for (const FabricScene& fabric : scene.fabrics) patterns.push_back(load_pattern(fabric.pattern));
   const std::string obstacle = lattice_obstacle_of_scene(scene, patterns);
   std::vector<KnittedFabric> out(count);
+  std::vector<BaseMesh> meshes(count);
+  std::vector<size_t> numbers;  // to be knitted
+  for (size_t i = 0; i < count; ++i) {
+    const FabricScene& fabric = scene.fabrics[i];
+    const KnitOrder order{fabric.mesh, fabric.transform, fabric.pattern, resolved(scene, fabric), obstacle};
+    out[i].yarn_colors = yarn_colors(fabric, patterns[i]);
+    out[i].of_previous = find_same(previous, order, out);
+    if (out[i].of_previous) continue;
+    out[i].knitting = {order, ++knitted_so_far, {}};
+    meshes[i] = load_mesh(fabric.mesh, loaders);  // one after the other: readers of meshes keep a state
+    numbers.push_back(i);
+  }
   std::vector<std::exception_ptr> failed(count);
   std::mutex mutex;
   size_t done = 0;
-  std::vector<size_t> numbers(count);  // taken from the back
-  std::iota(numbers.rbegin(), numbers.rend(), size_t(0));
+  const size_t knitting = numbers.size();
+  std::reverse(numbers.begin(), numbers.end());  // taken from the back
   // Parts of knitting that have one thread only then fill each other's gaps.
-  const auto threads = unsigned(std::min<size_t>(count, std::max(1u, std::thread::hardware_concurrency())));
+  const auto threads = unsigned(std::min<size_t>(knitting, std::max(1u, std::thread::hardware_concurrency())));
   run_tasks(threads, std::move(numbers), [&](size_t i, const auto&) {
     try {
-      knit(scene, scene.fabrics[i], patterns[i], obstacle, std::move(meshes[i]), out[i]);
+      knit(patterns[i], std::move(meshes[i]), out[i]);
     } catch (...) {
       failed[i] = std::current_exception();
     }
     const std::lock_guard lock(mutex);
-    progress(double(++done) / double(count));
+    progress(double(++done) / double(knitting));
   });
   for (const auto& failure : failed)
     if (failure) std::rethrow_exception(failure);

@@ -20,6 +20,7 @@ struct LeafForm {
 
   LeafForm() = default;
   LeafForm(Joints j, Vertices v = Vertices::full) : joints(j), vertices(v) {}
+  bool operator==(const LeafForm&) const = default;
   bool quantised() const { return vertices == Vertices::quantised; }
 
   /// S of a stored leaf: points with what fills their rows up.

@@ -16,6 +16,8 @@ struct Transform {
   double scale = 1;
   dvec3 rotate{0, 0, 0};
   dvec3 translate{0, 0, 0};
+
+  bool operator==(const Transform&) const = default;
 };
 
 /// A mesh: a file, or one of the bundled generators with its sizes (metres).
@@ -24,12 +26,16 @@ struct MeshSource {
   std::string generator;       ///< swatch, tube, pillow, beanie, sock, draped_square
   double width = 0, height = 0, radius = 0, thickness = 0, length = 0, size = 0, sphere_radius = 0;
   int nu = 0, nv = 0;
+
+  bool operator==(const MeshSource&) const = default;
 };
 
 struct PatternSource {
   std::filesystem::path file;  ///< absolute; empty when built in
   std::string builtin;         ///< one of bundled_tiles()
   PatternHints hints;
+
+  bool operator==(const PatternSource&) const = default;
 };
 
 /// Fitted parameters of the ply BSDF given directly (docs/appearance.md); each replaces the preset's. Angles in
@@ -41,6 +47,8 @@ struct Scattering {
   std::optional<double> backward_width, backward_deflection;                                  ///< s_b, d_b
   std::optional<double> variance_centre, variance_edge;                                       ///< v_c, v_e, rad^2
   std::optional<double> hits_edge, hits_chord, hits_back;                                     ///< n0, n1, of lobe B
+
+  bool operator==(const Scattering&) const = default;
 };
 
 /// What a ply is made of, where it is not the preset's; see FibreRecipe. Angles in radians.
@@ -50,12 +58,16 @@ struct Fibres {
   std::optional<double> radial_beta, radial_epsilon, migration_min, migration_rate;
   std::optional<uint32_t> seed;
   std::optional<double> transmit_width, transmit_azimuth_width;
+
+  bool operator==(const Fibres&) const = default;
 };
 
 /// One stretch of self-striping yarn.
 struct Stripe {
   Rgb color{1, 1, 1};
   double length = 0;  ///< metres of yarn
+
+  bool operator==(const Stripe&) const = default;
 };
 
 /// Appearance of plies: a preset, then what the scene overrides. Colours are scene-linear Rec. 709 in [0,1].
@@ -75,6 +87,8 @@ struct PlyAppearance {
   std::vector<Rgb> plies;                    ///< ply i of the yarn has colour i mod n
   std::vector<Stripe> stripes;               ///< one after the other along the yarn, then again from the first
   double heather_yarn = 0, heather_ply = 0;  ///< relative spread of lightness per full yarn and per ply
+
+  bool operator==(const PlyAppearance&) const = default;
 };
 
 struct SurfaceAppearance {
@@ -82,6 +96,8 @@ struct SurfaceAppearance {
   Rgb color{0.5, 0.5, 0.5};
   double roughness = 0.3;  ///< of the coat
   double ior = 1.5;
+
+  bool operator==(const SurfaceAppearance&) const = default;
 };
 
 struct MaterialSpec {
@@ -89,6 +105,8 @@ struct MaterialSpec {
   bool ply = false;
   PlyAppearance yarn;
   SurfaceAppearance surface;
+
+  bool operator==(const MaterialSpec&) const = default;
 };
 
 /// An image that colours stitches.
@@ -97,6 +115,8 @@ struct ColorImage {
   bool per_stitch = false;         ///< a pixel is a stitch; else the image lies over the base mesh's UV
   dvec2 origin{0, 0}, size{1, 1};  ///< UV of the image's lower left corner, and its extent; stitches when per_stitch
   bool repeat = false;             ///< else stitches beyond the image keep the material's colour
+
+  bool operator==(const ColorImage&) const = default;
 };
 
 struct FabricScene {
@@ -107,6 +127,8 @@ struct FabricScene {
   int material = 0;  ///< index into Scene::materials, a ply material
   ColorImage color_image;
   std::optional<std::vector<Rgb>> palette;  ///< of the tile's yarns, in place of the tile's own; empty: the material's
+
+  bool operator==(const FabricScene&) const = default;
 };
 
 /// A prop: mesh, sphere or an endless-looking ground quad.
@@ -121,6 +143,8 @@ struct ObjectScene {
   double extent = 10;  ///< ground: half size, metres
   dvec3 up{0, 1, 0};   ///< ground
   int material = 0;    ///< a surface material
+
+  bool operator==(const ObjectScene&) const = default;
 };
 
 struct LightScene {
@@ -136,6 +160,8 @@ struct LightScene {
   std::filesystem::path file;  ///< environment image; empty = constant radiance
   double rotation = 0;         ///< environment: radians about its up axis
   dvec3 env_up{0, 1, 0};
+
+  bool operator==(const LightScene&) const = default;
 };
 
 struct CameraScene {
@@ -145,6 +171,8 @@ struct CameraScene {
   double height = 1;    ///< orthographic: metres
   double aperture = 0;  ///< lens radius, metres
   double focus = 0;     ///< metres; 0 = distance to look_at
+
+  bool operator==(const CameraScene&) const = default;
 };
 
 struct FilmScene {
@@ -152,6 +180,8 @@ struct FilmScene {
   double exposure = 0;           ///< stops
   std::string view = "neutral";  ///< neutral, srgb
   std::string filter = "tent";   ///< tent, box
+
+  bool operator==(const FilmScene&) const = default;
 };
 
 struct IntegratorScene {
@@ -171,6 +201,8 @@ struct IntegratorScene {
   int lanes = 0;                           ///< 0 = from the device; 1, 8, 16
   unsigned pool = 0;                       ///< paths in flight; 0 = from the device
   unsigned seed = 0;
+
+  bool operator==(const IntegratorScene&) const = default;
 };
 
 /// A whole scene in SI units (metres, radians), colours linear. Materials are referred to by index.
@@ -185,6 +217,8 @@ struct Scene {
   std::vector<ObjectScene> objects;
   std::vector<LightScene> lights;
   std::string accuracy_preset;  ///< of --preset, for messages
+
+  bool operator==(const Scene&) const = default;
 };
 
 /// Reads a scene file strictly. Throws a user error "file:line:column: ..." with the nearest valid choice on unknown

@@ -41,36 +41,48 @@ std::vector<FabricInput> fabric_inputs(const World& world) {
   return inputs;
 }
 
-FabricDevice upload(const Device& device, const World& world, LocalStage stage, LeafForm form) {
-  const DriverCall guard;
-  return upload_fabrics(device, fabric_inputs(world), world.origin, stage, false, form);
+SceneDevice::Surfaces::Surfaces(const Device& device, const std::vector<float>& from, bool simt) : words(from) {
+  const TriangleTree tree = build_triangle_tree(corners_of(words));
+  const bool any = !tree.order.empty();
+  triangles = Buffer<float>(device, in_order(words, tree.order));
+  nodes = any ? Buffer<uint32_t>(device, tree.tree.words) : Buffer<uint32_t>(device, 0);
+  leaves = any ? Buffer<float>(device, tree.leaves) : Buffer<float>(device, 0);
+  if (any) root = 0;
+  if (simt) {
+    quantised = QuantisedTree(device, any ? tree.tree : WideTree{}, nodes);
+    nodes = Buffer<uint32_t>(device, 0);
+  }
 }
 
-SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage stage, LeafForm form)
-    : device_(device),
-      stage_(stage),
-      simt_(quantised_tree(device.traits(), stage)),
-      fabric_(upload(device, world, stage, form)) {
-  const TriangleTree tree = build_triangle_tree(corners_of(world.triangles));
+SceneDevice::FabricKey SceneDevice::fabric_key(const World& world) {
+  FabricKey key{{}, world.origin, world.local_stage, world.leaf_form};
+  const std::vector<FabricInput> inputs = fabric_inputs(world);
+  for (size_t i = 0; i < inputs.size(); ++i)
+    key.parts.push_back({world.knittings[i].number, inputs[i].material, inputs[i].fibre_material, inputs[i].tau});
+  return key;
+}
+
+SceneDevice::SceneDevice(const Device& device, const World& world, const SceneDevice* previous,
+                         const SceneDeviceOptions& options)
+    : device_(device), simt_(quantised_tree(device.traits(), world.local_stage)), key_(fabric_key(world)) {
+  shares_fabrics_ = previous && previous->key_ == key_;
+  if (shares_fabrics_) {
+    fabric_ = previous->fabric_;
+  } else {
+    const DriverCall guard;
+    fabric_ = std::make_shared<FabricDevice>(upload_fabrics(device, fabric_inputs(world), world.origin,
+                                                            world.local_stage, options.updatable, world.leaf_form));
+  }
+  if (previous && previous->simt_ == simt_ && previous->surfaces_->words == world.triangles)
+    surfaces_ = previous->surfaces_;
+  else
+    surfaces_ = std::make_shared<Surfaces>(device, world.triangles, simt_);
   ply_materials_ = Buffer<WPlyMaterial>(device, world.ply_materials);
   fibre_details_ = Buffer<WFibreDetail>(device, world.fibres.details);
   fibre_offsets_ = Buffer<uint32_t>(device, world.fibres.offsets);
   fibre_candidates_ = Buffer<w_float4>(device, world.fibres.candidates);
   fibre_materials_ = Buffer<WFibreMaterial>(device, world.fibre_materials);
   ply_colors_ = Buffer<uint32_t>(device, world.ply_colors);
-  triangles_ = Buffer<float>(device, in_order(world.triangles, tree.order));
-  if (!tree.order.empty()) {
-    tri_nodes_ = Buffer<uint32_t>(device, tree.tree.words);
-    tri_leaves_ = Buffer<float>(device, tree.leaves);
-    tri_root_ = 0;
-  } else {
-    tri_nodes_ = Buffer<uint32_t>(device, 0);
-    tri_leaves_ = Buffer<float>(device, 0);
-  }
-  if (simt_) {
-    tri_quantised_ = QuantisedTree(device, tree.order.empty() ? WideTree{} : tree.tree, tri_nodes_);
-    tri_nodes_ = Buffer<uint32_t>(device, 0);
-  }
   spheres_ = Buffer<WSphere>(device, world.spheres);
   sphere_count_ = uint32_t(world.spheres.size());
   surface_materials_ = Buffer<WSurfaceMaterial>(device, world.surface_materials);
@@ -89,36 +101,36 @@ SceneDevice::SceneDevice(const Device& device, const World& world, LocalStage st
 
 cl_uint SceneDevice::bind_scene(cl::Kernel& kernel, cl_uint first, bool procedural) const {
   cl_uint i = first;
-  kernel.setArg(i++, fabric_.tree.ray_nodes().cl());
-  kernel.setArg(i++, fabric_.tree.node_cell.cl());
-  kernel.setArg(i++, fabric_.tree.leaves.parts().front().words.cl());
-  kernel.setArg(i++, fabric_.tree.root);
-  kernel.setArg(i++, tri_root_);
-  kernel.setArg(i++, simt_ ? tri_quantised_.nodes().cl() : tri_nodes_.cl());
-  kernel.setArg(i++, tri_leaves_.cl());
+  kernel.setArg(i++, fabric_->tree.ray_nodes().cl());
+  kernel.setArg(i++, fabric_->tree.node_cell.cl());
+  kernel.setArg(i++, fabric_->tree.leaves.parts().front().words.cl());
+  kernel.setArg(i++, fabric_->tree.root);
+  kernel.setArg(i++, surfaces_->root);
+  kernel.setArg(i++, simt_ ? surfaces_->quantised.nodes().cl() : surfaces_->nodes.cl());
+  kernel.setArg(i++, surfaces_->leaves.cl());
   kernel.setArg(i++, spheres_.cl());
   kernel.setArg(i++, sphere_count_);
   kernel.setArg(i++, events_.cl());
   if (simt_) {
-    kernel.setArg(i++, fabric_.tree.quantised.leaf_boxes().cl());
-    kernel.setArg(i++, tri_quantised_.leaf_boxes().cl());
+    kernel.setArg(i++, fabric_->tree.quantised.leaf_boxes().cl());
+    kernel.setArg(i++, surfaces_->quantised.leaf_boxes().cl());
   }
-  if (fabric_.tree.leaves.split()) i = fabric_.tree.leaves.bind_others(kernel, i);
+  if (fabric_->tree.leaves.split()) i = fabric_->tree.leaves.bind_others(kernel, i);
   if (procedural) {
-    kernel.setArg(i++, fabric_.lattice.lattice.cl());
-    kernel.setArg(i++, fabric_.lattice.tiles.cl());
-    kernel.setArg(i++, fabric_.lattice.patch_bits);
+    kernel.setArg(i++, fabric_->lattice.lattice.cl());
+    kernel.setArg(i++, fabric_->lattice.tiles.cl());
+    kernel.setArg(i++, fabric_->lattice.patch_bits);
   }
-  if (stage_ != LocalStage::exact) {
-    kernel.setArg(i++, fabric_.base_positions.cl());
-    kernel.setArg(i++, fabric_.base_indices.cl());
-    kernel.setArg(i++, fabric_.base_uv.cl());
-    kernel.setArg(i++, fabric_.cell_triangle_offsets.cl());
-    kernel.setArg(i++, fabric_.cell_triangles.cl());
-    kernel.setArg(i++, fabric_.cell_segment_offsets.cl());
-    kernel.setArg(i++, fabric_.cell_segments.cl());
-    kernel.setArg(i++, fabric_.grids.cl());
-    kernel.setArg(i++, fabric_.grid_of_cell.cl());
+  if (key_.stage != LocalStage::exact) {
+    kernel.setArg(i++, fabric_->base_positions.cl());
+    kernel.setArg(i++, fabric_->base_indices.cl());
+    kernel.setArg(i++, fabric_->base_uv.cl());
+    kernel.setArg(i++, fabric_->cell_triangle_offsets.cl());
+    kernel.setArg(i++, fabric_->cell_triangles.cl());
+    kernel.setArg(i++, fabric_->cell_segment_offsets.cl());
+    kernel.setArg(i++, fabric_->cell_segments.cl());
+    kernel.setArg(i++, fabric_->grids.cl());
+    kernel.setArg(i++, fabric_->grid_of_cell.cl());
   }
   return i;
 }
@@ -143,19 +155,20 @@ cl_uint SceneDevice::bind_ply_colors(cl::Kernel& kernel, cl_uint first) const {
 }
 
 std::map<std::string, uint64_t> SceneDevice::bytes() const {
-  const uint64_t frames = fabric_.frames.bytes(), leaves = fabric_.tree.leaves.bytes();
-  const uint64_t tree = fabric_.tree.tree_bytes();
+  const uint64_t frames = fabric_->frames.bytes(), leaves = fabric_->tree.leaves.bytes();
+  const uint64_t tree = fabric_->tree.tree_bytes();
   return {{"ply vertices", frames},
           {"ply leaves", leaves},
-          {"lattices", fabric_.lattice.bytes()},
+          {"lattices", fabric_->lattice.bytes()},
           {"ply tree", tree},
-          {"triangles", triangles_.bytes() + tri_leaves_.bytes() + tri_nodes_.bytes() + tri_quantised_.bytes()},
+          {"triangles", surfaces_->triangles.bytes() + surfaces_->leaves.bytes() + surfaces_->nodes.bytes() +
+                            surfaces_->quantised.bytes()},
           {"environment", env_texels_.bytes() + env_cdf_.bytes()},
           {"lights", lights_.bytes() + light_cdf_.bytes() + light_triangles_.bytes()},
           {"fibre detail", fibre_details_.bytes() + fibre_offsets_.bytes() + fibre_candidates_.bytes()},
           {"materials", ply_materials_.bytes() + fibre_materials_.bytes() + surface_materials_.bytes()},
           {"ply colours", ply_colors_.bytes()},
-          {"UV cells", fabric_.bytes - frames - leaves - tree}};
+          {"UV cells", fabric_->bytes - frames - leaves - tree}};
 }
 
 }  // namespace wale

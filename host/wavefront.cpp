@@ -32,15 +32,12 @@ cl_float2 pixel_width(const WCamera& camera) {
 Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Features& features, const WCamera& camera,
                      uint32_t pool, const std::filesystem::path& kernel_dir)
     : device_(device),
-      scene_(scene),
+      scene_(&scene),
       features_(features),
       camera_(camera),
       kernel_dir_(kernel_dir),
       pool_(std::max(64u, pool)),
       film_(device, camera.width, camera.height, features.aovs) {
-  const PlyTree& tree = scene.fabric().tree;
-  if (!tree.leaf_offset.empty() && tree.form.quantised() != features.quantised_vertices)
-    bug("wavefront: kernels and leaves differ in how vertices are kept");
   const auto vec = [&](Buffer<w_float4>& buffer, size_t count) {
     buffer = Buffer<w_float4>(device_, count);
     bytes_ += buffer.bytes();
@@ -71,9 +68,11 @@ cl_uint Wavefront::bind_path(cl::Kernel& k, cl_uint first) const {
   return first + 13;
 }
 
-void Wavefront::bind_intersect(const char* name) { scene_.bind_scene(kernel(name), bind_path(kernel(name), 1), features_.procedural); }
+void Wavefront::bind_intersect(const char* name) {
+  scene_->bind_scene(kernel(name), bind_path(kernel(name), 1), features_.procedural);
+}
 
-std::string Wavefront::options() const { return features_.options() + scene_.options(); }
+std::string Wavefront::options() const { return features_.options() + scene_->options(); }
 
 void Wavefront::take_packets() {
   if (!waiting_ || is_being_compiled(device_, waiting_->file, options(), kernel_dir_)) return;
@@ -109,7 +108,29 @@ void Wavefront::build_programs() {
     for (const auto& name : programs[i].kernels) kernels_[name] = cl::Kernel(program, name.c_str());
   }
 
-  // Arguments that never change are set once; `first` is the index behind WFrame.
+  bind();
+}
+
+bool Wavefront::serves(const SceneDevice& scene, const Features& features) const {
+  return features.options() + scene.options() == options();
+}
+
+void Wavefront::rebind(const SceneDevice& scene, const Features& features, const WCamera& camera) {
+  if (!serves(scene, features) || camera.width != camera_.width || camera.height != camera_.height)
+    bug("wavefront: bound to a scene or a picture that it was not made for");
+  harvest_events();
+  scene_ = &scene;
+  features_ = features;
+  camera_ = camera;
+  film_.clear(device_);
+  bind();
+}
+
+void Wavefront::bind() {
+  const PlyTree& tree = scene_->fabric().tree;
+  if (!tree.leaf_offset.empty() && tree.form.quantised() != features_.quantised_vertices)
+    bug("wavefront: kernels and leaves differ in how vertices are kept");
+  // `first` is the index behind WFrame, which every launch sets anew.
   const auto path = [&](cl::Kernel& k, cl_uint first) { return bind_path(k, first); };
   auto& generate = kernel("generate");
   generate.setArg(1, camera_);
@@ -117,38 +138,38 @@ void Wavefront::build_programs() {
   for (const char* name : {"intersect", "intersect_packets"})
     if (kernels_.contains(name)) bind_intersect(name);
   auto& miss = kernel("miss");
-  cl_uint next = scene_.bind_lights(miss, path(miss, 1));
+  cl_uint next = scene_->bind_lights(miss, path(miss, 1));
   set_args(miss, next, aov_.cl(), miss_list_.cl(), queue_counts_.cl(), kHits + 2);
   if (kernels_.contains("shade_ply")) {
     auto& k = kernel("shade_ply");
-    next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1), features_.procedural));
-    set_args(k, next, scene_.frames(), uint32_t(features_.normals), scene_.ply_materials());
+    next = scene_->bind_lights(k, scene_->bind_scene(k, path(k, 1), features_.procedural));
+    set_args(k, next, scene_->frames(), uint32_t(features_.normals), scene_->ply_materials());
     next += 3;
     if (features_.detail) {
-      set_args(k, next, scene_.fibre_details(), scene_.fibre_offsets(), scene_.fibre_candidates());
+      set_args(k, next, scene_->fibre_details(), scene_->fibre_offsets(), scene_->fibre_candidates());
       set_args(k, next + 3, pixel_width(camera_));
       next += 4;
     }
-    if (features_.ply_colors) next = scene_.bind_ply_colors(k, next);
+    if (features_.ply_colors) next = scene_->bind_ply_colors(k, next);
     set_args(k, next, aov_.cl(), ply_list_.cl(), queue_counts_.cl(), kHits);
   }
   if (kernels_.contains("shade_fibre")) {
     auto& k = kernel("shade_fibre");
-    next = scene_.bind_lights(k, scene_.bind_scene(k, path(k, 1), features_.procedural));
-    set_args(k, next, scene_.frames(), uint32_t(features_.normals), scene_.fibre_materials());
+    next = scene_->bind_lights(k, scene_->bind_scene(k, path(k, 1), features_.procedural));
+    set_args(k, next, scene_->frames(), uint32_t(features_.normals), scene_->fibre_materials());
     next += 3;
-    if (features_.ply_colors) next = scene_.bind_ply_colors(k, next);
+    if (features_.ply_colors) next = scene_->bind_ply_colors(k, next);
     set_args(k, next, aov_.cl(), fibre_list_.cl(), queue_counts_.cl(), kHits + 3);
   }
   if (kernels_.contains("shade_surface")) {
     auto& k = kernel("shade_surface");
-    next = scene_.bind_lights(k, path(k, 1));
-    set_args(k, next, scene_.triangles(), scene_.spheres(), scene_.surface_materials(), aov_.cl(), surface_list_.cl(),
-             queue_counts_.cl(), kHits + 1);
+    next = scene_->bind_lights(k, path(k, 1));
+    set_args(k, next, scene_->triangles(), scene_->spheres(), scene_->surface_materials(), aov_.cl(),
+             surface_list_.cl(), queue_counts_.cl(), kHits + 1);
   }
   if (features_.lights) {
     auto& k = kernel("connect");
-    next = scene_.bind_scene(k, path(k, 1), features_.procedural);
+    next = scene_->bind_scene(k, path(k, 1), features_.procedural);
     set_args(k, next, shadow_list_.cl(), queue_counts_.cl());
   }
   set_args(kernel("accumulate"), 1, camera_, tiles_.cl());
@@ -229,7 +250,7 @@ void Wavefront::trace(WFrame frame, const std::vector<uint32_t>& tiles, uint32_t
       }
     const uint32_t shaded = kShaded[side];
     compact(live, count_index, shaded, bound, active_[1 - side], shadow_list_, spare_list_);
-    if (features_.lights && scene_.samples_lights()) {
+    if (features_.lights && scene_->samples_lights()) {
       if (recording) keep_rays(frame, RayKind::shadow, shadow_list_, shaded + 1, depth);
       launch_connect(shaded + 1, depth, bound);
     }
@@ -262,7 +283,7 @@ void Wavefront::trace(WFrame frame, const std::vector<uint32_t>& tiles, uint32_t
   }
   for (const size_t band : film_.bands_of(tiles)) {
     const auto [band_first, band_pixels] = film_.pixels_of(band);
-    set_args(kernel("accumulate"), 3, band_first, band_pixels, radiance_.cl(), film_.radiance(band), scene_.events());
+    set_args(kernel("accumulate"), 3, band_first, band_pixels, radiance_.cl(), film_.radiance(band), scene_->events());
     launch("accumulate", pixels);
     if (!features_.aovs) continue;
     set_args(kernel("accumulate_aov"), 3, band_first, band_pixels, aov_.cl(), film_.aov(band), film_.ply(band));
@@ -285,7 +306,7 @@ void Wavefront::harvest_events() {
 WaveCounts Wavefront::counts() const {
   WaveCounts counts = counts_;
   std::erase_if(counts.stages, [](const auto& stage) { return stage.second.launches == 0; });
-  const auto events = scene_.read_events();
+  const auto events = scene_->read_events();
   for (size_t i = 0; i < counts.events.size(); ++i) counts.events[i] += events[i];
   return counts;
 }

@@ -28,6 +28,12 @@ class Wavefront {
 
   uint32_t pool() const { return pool_; }
 
+  /// Goes on with another version of the scene, seen by another camera with as many pixels, and an empty film. The
+  /// programs stay: the version must be one that they serve (serves()).
+  void rebind(const SceneDevice& scene, const Features& features, const WCamera& camera);
+  /// Programs built for `features` and a scene that lies like `scene` are those of this wavefront.
+  bool serves(const SceneDevice& scene, const Features& features) const;
+
   /// Traces `samples` samples from `first_sample` of the pixels of these tiles and adds them to the film; pixels of the
   /// border tiles that lie outside the picture are skipped. At most the pool's paths, but one tile at least.
   void trace(WFrame frame, const std::vector<uint32_t>& tiles, uint32_t first_sample, uint32_t samples);
@@ -54,6 +60,8 @@ class Wavefront {
   static constexpr uint32_t kGenerated = 0, kHits = 1, kShaded[2] = {5, 9}, kQueueCounts = 13;
 
   void build_programs();
+  /// Sets the arguments that follow from the scene and the camera.
+  void bind();
   /// Sets the arguments of W_PATH_PARAMS from `first` on; returns the next free index.
   cl_uint bind_path(cl::Kernel& kernel, cl_uint first) const;
   void bind_intersect(const char* name);
@@ -75,7 +83,7 @@ class Wavefront {
   void harvest_events();
 
   const Device& device_;
-  const SceneDevice& scene_;
+  const SceneDevice* scene_;
   Features features_;
   WCamera camera_;
   std::filesystem::path kernel_dir_;

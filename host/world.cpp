@@ -7,6 +7,7 @@
 
 #include "geom/error.h"
 #include "host/analysis.h"
+#include "host/features.h"
 #include "host/knit_fabrics.h"
 #include "host/materials.h"
 #include "host/placement.h"
@@ -35,8 +36,12 @@ std::array<float, 3> rgb3(const Rgb& c) { return {float(c[0]), float(c[1]), floa
 
 class Builder {
  public:
-  Builder(const Scene& scene, const Loaders& loaders, const BuildProgress& progress)
-      : scene_(scene), loaders_(loaders), progress_(progress) {}
+  Builder(const Scene& scene, const Loaders& loaders, const BuildProgress& progress, const WorldOptions& options)
+      : scene_(scene), loaders_(loaders), progress_(progress), options_(options), previous_(options.previous) {}
+  // What was taken goes back, unless build() came to its end.
+  ~Builder() {
+    if (previous_ && !done_) give_back_fabrics(world_, *previous_);
+  }
 
   World build() {
     step("knit", [&] { knit_all(); });
@@ -47,6 +52,9 @@ class Builder {
       add_lights();
     });
     world_.camera = camera();
+    world_.local_stage = local_stage(scene_.integrator);
+    world_.leaf_form = leaf_form(scene_.integrator);
+    done_ = true;
     return std::move(world_);
   }
 
@@ -61,15 +69,16 @@ class Builder {
   }
 
   void knit_all() {
-    std::vector<KnittedFabric> knitted = knit_fabrics(scene_, loaders_, [&](double done) {
-      if (progress_) progress_("knit", done);
-    });
+    std::vector<KnittedFabric> knitted = knit_fabrics(
+        scene_, loaders_,
+        [&](double done) {
+          if (progress_) progress_("knit", done);
+        },
+        previous_);
     for (size_t f = 0; f < knitted.size(); ++f) {
       const FabricScene& fabric = scene_.fabrics[f];
       const PlyAppearance& yarn = scene_.materials.at(size_t(fabric.material)).yarn;
-      world_.notes.insert(world_.notes.end(), knitted[f].notes.begin(), knitted[f].notes.end());
-      world_.fabric_mesh_reports.push_back(knitted[f].mesh_report);
-      world_.fabrics.push_back(std::move(knitted[f].fabric));
+      take(knitted[f]);
       Fabric& made = world_.fabrics.back();
       bounds_.add(made.mesh), fabric_bounds_.add(made.mesh);
       world_.fabric_material.push_back(uint32_t(world_.ply_materials.size()));
@@ -82,8 +91,22 @@ class Builder {
     }
   }
 
-  void color_plies(Fabric& fabric, const PlyAppearance& yarn, const ColorImage& image,
-                   const std::vector<Rgb>& yarns) {
+  void take(KnittedFabric& knitted) {
+    world_.fabrics.emplace_back();
+    if (const auto from = knitted.of_previous) {
+      world_.fabric_mesh_reports.push_back(previous_->fabric_mesh_reports[*from]);
+      world_.knittings.push_back(previous_->knittings[*from]);
+      std::swap(world_.fabrics.back(), previous_->fabrics[*from]);
+    } else {
+      world_.fabric_mesh_reports.push_back(knitted.mesh_report);
+      world_.knittings.push_back(std::move(knitted.knitting));
+      world_.fabrics.back() = std::move(knitted.fabric);
+    }
+    const std::vector<std::string>& notes = world_.knittings.back().notes;
+    world_.notes.insert(world_.notes.end(), notes.begin(), notes.end());
+  }
+
+  void color_plies(Fabric& fabric, const PlyAppearance& yarn, const ColorImage& image, const std::vector<Rgb>& yarns) {
     const size_t before = vertices_;
     vertices_ += fabric.anchors.size();
     if (!colors_vary(yarn, image, yarns)) {
@@ -95,7 +118,7 @@ class Builder {
     world_.ply_colors.resize(before, 0);  // fabrics before it keep their materials' colours
     world_.ply_colors.insert(world_.ply_colors.end(), words.begin(), words.end());
     world_.colored_fabrics.push_back(fabric.name);
-    fabric.place = {};
+    if (!options_.editable) fabric.place = {};
   }
 
   int add_material(const SurfaceAppearance& look) {
@@ -327,6 +350,9 @@ class Builder {
   const Scene& scene_;
   const Loaders& loaders_;
   const BuildProgress& progress_;
+  const WorldOptions& options_;
+  World* previous_;
+  bool done_ = false;
   World world_;
   Bounds bounds_, fabric_bounds_;
   size_t vertices_ = 0;  ///< of the fabrics so far
@@ -336,9 +362,16 @@ class Builder {
 
 }  // namespace
 
-World build_world(const Scene& scene, const Loaders& loaders, const BuildProgress& progress, bool drop) {
-  World world = Builder(scene, loaders, progress).build();
-  if (drop) drop_what_cannot_matter(world);
+void give_back_fabrics(World& from, World& previous) {
+  for (size_t i = 0; i < from.fabrics.size(); ++i)
+    for (size_t k = 0; k < previous.fabrics.size(); ++k)
+      if (previous.knittings[k].number == from.knittings[i].number) std::swap(previous.fabrics[k], from.fabrics[i]);
+}
+
+World build_world(const Scene& scene, const Loaders& loaders, const BuildProgress& progress,
+                  const WorldOptions& options) {
+  World world = Builder(scene, loaders, progress, options).build();
+  if (options.drop) drop_what_cannot_matter(world);
   return world;
 }
 

@@ -7,7 +7,10 @@
 #include "geom/fabric.h"
 #include "host/fibre_tables.h"
 #include "host/image.h"
+#include "host/knit_order.h"
+#include "host/leaf_form.h"
 #include "host/light_tables.h"
+#include "host/local_stage.h"
 #include "host/scene.h"
 #include "shared/wale_types.h"
 
@@ -24,11 +27,19 @@ struct Dropped {
   std::string what, because;
 };
 
+/// Where a fabric comes from.
+struct Knitting {
+  KnitOrder order;
+  uint64_t number = 0;             ///< of this program's knittings, from 1 on: two fabrics with one number are the same
+  std::vector<std::string> notes;  ///< what was mended or chosen, one line each
+};
+
 /// A scene made concrete on the host: knitted fabrics, triangles, lights and materials, ready to be uploaded. Positions
 /// of fabrics are in double; everything in float is relative to `origin`.
 struct World {
   dvec3 origin{0, 0, 0};  ///< metres; subtracted from every position before it becomes float
   std::vector<Fabric> fabrics;
+  std::vector<Knitting> knittings;  ///< per fabric
   std::vector<MeshReport> fabric_mesh_reports;
   std::vector<WPlyMaterial> ply_materials;
   std::vector<uint32_t> fabric_material;        ///< per fabric, into ply_materials
@@ -44,11 +55,13 @@ struct World {
   WEnvironment environment{};
   EnvironmentTables environment_tables;  ///< empty for a constant environment
   WCamera camera{};
-  std::vector<std::string> notes;         ///< what was mended in the input, one line each
-  std::vector<std::string> light_names;   ///< per light, for `wale plan`
+  std::vector<std::string> notes;                         ///< what was mended in the input, one line each
+  std::vector<std::string> light_names;                   ///< per light, for `wale plan`
   std::vector<std::string> triangle_names, sphere_names;  ///< of objects and lights of that shape
-  std::vector<Dropped> dropped;           ///< what was left out because it cannot matter
-  bool first_hits_only = false;           ///< paths gather nothing after their first hit
+  std::vector<Dropped> dropped;                           ///< what was left out because it cannot matter
+  bool first_hits_only = false;                           ///< paths gather nothing after their first hit
+  LocalStage local_stage = LocalStage::exact;
+  LeafForm leaf_form;
   std::map<std::string, double> seconds;  ///< per step of the build
 
   size_t triangle_count() const { return triangles.size() / kTriangleWords; }
@@ -57,9 +70,20 @@ struct World {
 
 using BuildProgress = std::function<void(const std::string& step, double fraction)>;
 
-/// Builds everything that does not need a device. Throws user errors that name the object. `drop`: leave out what
-/// cannot matter (host/analysis.h).
-World build_world(const Scene& scene, const Loaders& loaders, const BuildProgress& progress = {}, bool drop = true);
+struct WorldOptions {
+  bool drop = true;       ///< leave out what cannot matter (host/analysis.h)
+  bool editable = false;  ///< keep what another version's colours need
+  World* previous =
+      nullptr;  ///< an earlier version, whose fabrics are taken where they are the same; it keeps the rest
+};
+
+/// Builds everything that does not need a device. Throws user errors that name the object, and leaves the earlier
+/// version as it was then.
+World build_world(const Scene& scene, const Loaders& loaders, const BuildProgress& progress = {},
+                  const WorldOptions& options = {});
+
+/// Puts the fabrics that build_world() took from an earlier version back into it.
+void give_back_fabrics(World& from, World& previous);
 
 /// The mesh that a scene names, generated or read, before its transform.
 BaseMesh load_mesh(const MeshSource& source, const Loaders& loaders);

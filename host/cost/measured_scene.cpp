@@ -30,7 +30,7 @@ std::shared_ptr<const Prepared> MeasuredScenes::prepare(const Unit& unit) {
   const uint32_t pool = pool_of(device_.traits(), integrator, {});
   const std::vector<MemoryNeed> needs = memory_needs(made->world, features, pool, device_.traits());
   require_memory(device_, needs);
-  made->on_device = std::make_unique<SceneDevice>(device_, made->world, local_stage(integrator), leaf_form(integrator));
+  made->on_device = std::make_unique<SceneDevice>(device_, made->world);
   const FabricDevice& fabric = made->on_device->fabric();
   made->start = {made->world.seconds.at("knit"), fabric.warp_seconds + fabric.pack_seconds, fabric.build_seconds, 0, 0};
   for (const auto& [name, bytes] : made->on_device->bytes()) made->start.bytes += bytes;

@@ -10,7 +10,7 @@ namespace wale::test {
 namespace {
 
 World world_of(const Scene& scene, bool drop = true) {
-  return build_world(scene, Loaders{[](const auto& file) { return read_mesh(file); }, {}}, {}, drop);
+  return build_world(scene, Loaders{[](const auto& file) { return read_mesh(file); }, {}}, {}, {.drop = drop});
 }
 
 Rendered rendered(const Scene& scene, bool drop, int spp = 16, unsigned seed = 0, bool aovs = false) {

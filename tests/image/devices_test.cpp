@@ -41,7 +41,7 @@ TEST(Devices, AFilmInSeveralBuffersIsTheSameFilm) {
   small.traits().max_alloc_bytes = 3 * 64 * 8 * sizeof(w_float4);  // three tiles; the picture has 25
   // Only the film splits: the scene goes up with the device as it is.
   const World world = build_world(scene, {});
-  const SceneDevice on_device(device(), world, local_stage(scene.integrator));
+  const SceneDevice on_device(device(), world);
   IntegratorScene integrator = scene.integrator;
   integrator.seed = 3;
   RenderOptions options;

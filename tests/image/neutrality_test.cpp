@@ -29,7 +29,7 @@ struct Built {
   IntegratorScene integrator;
   Built(const Device& dev, const Scene& scene)
       : world(build_world(scene, loaders())),
-        on_device(dev, world, local_stage(scene.integrator)),
+        on_device(dev, world),
         integrator(scene.integrator) {}
   Rendered render_with(const Device& dev, const Features& also, bool aovs = false) const {
     RenderOptions options;

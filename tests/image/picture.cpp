@@ -22,7 +22,7 @@ Studio::Studio(const Device& device, const Scene& scene)
       integrator_(scene.integrator),
       world_(build_world(scene, Loaders{[](const auto& file) { return read_mesh(file); },
                                         [](const auto& file) { return read_image(file, true); }})),
-      on_device_(device, world_, local_stage(scene.integrator), leaf_form(scene.integrator)) {}
+      on_device_(device, world_) {}
 
 Rendered Studio::take(const RenderOptions& options, unsigned seed) const {
   IntegratorScene integrator = integrator_;

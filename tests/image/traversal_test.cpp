@@ -65,7 +65,7 @@ TEST(Traversal, QuantisesTheTreeOfTheExactStageAlone) {
   const Device device = one_ray_per_item();
   const World world = build_world(scene_with_everything("exact"), {});
   const SceneDevice exact(device, world);
-  const SceneDevice cells(device, build_world(scene_with_everything("cell"), {}), LocalStage::cell);
+  const SceneDevice cells(device, build_world(scene_with_everything("cell"), {}));
   EXPECT_GT(exact.fabric().tree.quantised.bytes(), 0u);
   EXPECT_EQ(cells.fabric().tree.quantised.bytes(), 0u);
   const Features features = analyse(world, scene_with_everything("exact").integrator, false, device.traits());
