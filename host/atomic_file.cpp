@@ -44,13 +44,23 @@ bool AtomicFile::commit_if_new() {
   return true;
 }
 
-void write_text_file(const fs::path& file, const std::string& text) {
-  AtomicFile out(file);
+static void fill(const AtomicFile& out, const fs::path& file, const std::string& text) {
   std::ofstream stream(out.temporary(), std::ios::binary);
   stream << text;
   stream.close();
   if (!stream) user_error("{}: cannot be written; is the disk full?", file.string());
+}
+
+void write_text_file(const fs::path& file, const std::string& text) {
+  AtomicFile out(file);
+  fill(out, file, text);
   out.commit();
+}
+
+bool write_new_text_file(const fs::path& file, const std::string& text) {
+  AtomicFile out(file);
+  fill(out, file, text);
+  return out.commit_if_new();
 }
 
 void require_writable_path(const fs::path& file) { AtomicFile probe(file); }

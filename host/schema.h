@@ -23,6 +23,7 @@ struct Range {
   std::string text() const;
 };
 
+class FileFence;
 struct SchemaType;
 using Type = std::shared_ptr<const SchemaType>;
 
@@ -97,6 +98,7 @@ Type either(std::vector<std::pair<std::string, Type>> alternatives);
 struct SchemaContext {
   double metres_per_unit = 1;
   std::filesystem::path folder;  ///< relative files start here
+  FileFence* fence = nullptr;    ///< asked for every file that a document names; null: any may be
 };
 
 /// Checks a document strictly and turns it into SI in place: lengths to metres, angles to radians, colours to three

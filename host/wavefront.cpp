@@ -115,14 +115,14 @@ bool Wavefront::serves(const SceneDevice& scene, const Features& features) const
   return features.options() + scene.options() == options();
 }
 
-void Wavefront::rebind(const SceneDevice& scene, const Features& features, const WCamera& camera) {
+void Wavefront::rebind(const SceneDevice& scene, const Features& features, const WCamera& camera, bool keep_film) {
   if (!serves(scene, features) || camera.width != camera_.width || camera.height != camera_.height)
     bug("wavefront: bound to a scene or a picture that it was not made for");
   harvest_events();
   scene_ = &scene;
   features_ = features;
   camera_ = camera;
-  film_.clear(device_);
+  if (!keep_film) film_.clear(device_);
   bind();
 }
 

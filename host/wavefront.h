@@ -28,9 +28,9 @@ class Wavefront {
 
   uint32_t pool() const { return pool_; }
 
-  /// Goes on with another version of the scene, seen by another camera with as many pixels, and an empty film. The
-  /// programs stay: the version must be one that they serve (serves()).
-  void rebind(const SceneDevice& scene, const Features& features, const WCamera& camera);
+  /// Goes on with another version of the scene, seen by another camera with as many pixels, and an empty film unless
+  /// `keep_film`. The programs stay: the version must be one that they serve (serves()).
+  void rebind(const SceneDevice& scene, const Features& features, const WCamera& camera, bool keep_film = false);
   /// Programs built for `features` and a scene that lies like `scene` are those of this wavefront.
   bool serves(const SceneDevice& scene, const Features& features) const;
 
