@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Published{"stockinette", "k2\nk2\n", tolerance::kPublishedPeriod, tolerance::kPublishedDistance},
                     Published{"cartridge_belt_rib", "p s p2\nk3 S\np s p2\nk3 S\n", tolerance::kPublishedRibPeriod,
                               tolerance::kPublishedRibDistance, true}),
-    [](const auto& info) { return std::string(info.param.file); });
+    [](const auto& test) { return std::string(test.param.file); });
 
 }  // namespace
 }  // namespace wale
