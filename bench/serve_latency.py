@@ -5,7 +5,7 @@ usage: bench/serve_latency.py WALE [--scene SCENE] [--set KEY=VALUE ...] [--repe
 Prints a table: median, 90th percentile and worst of each kind of edit, before and after as many random edits, and the
 server's resident memory on the way.
 """
-import argparse, json, os, random, re, socket, subprocess, sys, threading, time
+import argparse, atexit, json, os, random, re, socket, subprocess, sys, threading, time
 from urllib.parse import urlparse, parse_qs
 
 
@@ -17,6 +17,7 @@ class Editor:
         for one in sets:
             command += ["--set", one]
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env={**os.environ, **(environment or {})})
+        atexit.register(self.process.kill)
         self.address = self.process.stdout.readline().strip()
         url = urlparse(self.address)
         self.port, self.token = url.port, parse_qs(url.query)["token"][0]

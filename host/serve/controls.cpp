@@ -176,6 +176,7 @@ class Table {
                             "turns of the plies per 100 yarn radii; negative = left-handed", -kHundredRadii / kLeastPitch,
                             kHundredRadii / kLeastPitch, 0.5,
                             spec.twist_pitch == 0 ? 0 : kHundredRadii / spec.twist_pitch);
+    twist.unit = "turns";
     twist.set = [path = twist.path](double v, const std::string&) {
       return Texts{path + "=" + (std::abs(v) < 0.1 ? "0" : plain_number(kHundredRadii / v))};
     };
@@ -310,6 +311,7 @@ class Table {
                           {{"scene", "as in the scene"}, {"front", "the front"}, {"back", "behind"}, {"both", "front and behind, side by side"}},
                           settings_.lit);
     lit.path.clear();
+    lit.set = nullptr;
     if (scene_.camera_given && !scene_.camera.orthographic)
       number("camera.fov", "View", "Angle of view", "vertical", 2, 90, 0.5, scene_.camera.fov * 57.29577951308232, "°");
     number("film.exposure", "View", "Exposure", "stops; of the picture on the screen", -6, 6, 0.1, scene_.film.exposure, "stops");

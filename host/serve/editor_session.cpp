@@ -215,9 +215,9 @@ void EditorSession::publish_cost(const std::string& status, const Version& versi
                                  const Redone& redone, const std::vector<std::unique_ptr<ProgressiveRender>>& renders) {
   size_t segments = 0;
   for (const Fabric& fabric : live.world().fabrics) segments += fabric.report.segments;
-  uint32_t samples = kMostSamples;
+  uint32_t samples = renders.empty() ? 0 : kMostSamples;
   double error = 0, mrays = 0, left = 0, seconds = 0;
-  bool known = true;
+  bool known = !renders.empty();
   for (const auto& render : renders) {
     const RenderState& s = render->state();
     samples = std::min(samples, s.samples);
