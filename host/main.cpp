@@ -182,7 +182,10 @@ int run(int argc, char** argv) {
   wale::bench::add_bench_options(*c, bench);
   c->callback([&] { status = wale::bench::run_bench(bench, loaders); });
   c = app.add_subcommand("devices", "list the OpenCL devices");
-  c->callback([&] { status = wale::run_devices(); });
+  c->callback([&] {
+    status = wale::run_devices();
+    wale::print_editor_note();
+  });
   c = app.add_subcommand("schema", "print the JSON Schema of scene files");
   c->callback([&] { status = wale::run_schema(); });
 

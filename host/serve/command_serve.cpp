@@ -49,6 +49,11 @@ HttpHandlers handlers(EditorSession& session, const EditorGate& gate, size_t lon
 
 }  // namespace
 
+void print_editor_note() {
+  fmt::print("editor (wale serve): {}\n",
+             has_http_library() ? "yes" : "no; apt-get install libcpp-httplib-dev, then build again");
+}
+
 int run_serve(const ServeArgs& args, const Loaders& loaders) {
   require_image_coder();
   FilmScene size;

@@ -14,4 +14,7 @@ struct ServeArgs : SceneArgs {
 /// Edits a scene in a browser until Ctrl-C, SIGTERM or the page's stop. Prints the address, which holds the token.
 int run_serve(const ServeArgs& args, const Loaders& loaders);
 
+/// For `wale devices`: whether this build has the editor.
+void print_editor_note();
+
 }  // namespace wale
