@@ -36,13 +36,31 @@ void AtomicFile::commit() {
   committed_ = true;
 }
 
-void write_text_file(const fs::path& file, const std::string& text) {
-  AtomicFile out(file);
+bool AtomicFile::commit_if_new() {
+  std::error_code error;
+  fs::create_hard_link(temporary_, file_, error);  // unlike a rename it takes no other file's place
+  if (error == std::errc::file_exists) return false;
+  if (error) user_error("{}: cannot be written: {}", file_.string(), error.message());
+  return true;
+}
+
+static void fill(const AtomicFile& out, const fs::path& file, const std::string& text) {
   std::ofstream stream(out.temporary(), std::ios::binary);
   stream << text;
   stream.close();
   if (!stream) user_error("{}: cannot be written; is the disk full?", file.string());
+}
+
+void write_text_file(const fs::path& file, const std::string& text) {
+  AtomicFile out(file);
+  fill(out, file, text);
   out.commit();
+}
+
+bool write_new_text_file(const fs::path& file, const std::string& text) {
+  AtomicFile out(file);
+  fill(out, file, text);
+  return out.commit_if_new();
 }
 
 void require_writable_path(const fs::path& file) { AtomicFile probe(file); }

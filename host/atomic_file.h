@@ -18,6 +18,8 @@ class AtomicFile {
   const std::filesystem::path& temporary() const { return temporary_; }
   /// Renames into place. Throws a user error when the disk refuses.
   void commit();
+  /// The same, but false, and nothing done, where a file of that name has come up.
+  bool commit_if_new();
 
  private:
   std::filesystem::path file_, temporary_;
@@ -26,6 +28,9 @@ class AtomicFile {
 
 /// Writes a whole text (or any bytes) atomically. Throws a user error when it does not fit on the disk.
 void write_text_file(const std::filesystem::path& file, const std::string& text);
+
+/// The same, but false, and nothing written, where a file of that name exists.
+bool write_new_text_file(const std::filesystem::path& file, const std::string& text);
 
 /// Throws the user error that an AtomicFile of this name would throw, and leaves nothing behind.
 void require_writable_path(const std::filesystem::path& file);

@@ -24,6 +24,9 @@ struct ImageCoder {
                         const std::function<void(const ImageHeader&)>& accept, Image& image);
   /// PNG of 3 bytes a pixel, sRGB encoded.
   std::string (*encode_png)(const std::vector<unsigned char>& rgb, int width, int height, std::string& png);
+  /// JPEG of the same, colours at full resolution; `quality` 1 to 100.
+  std::string (*encode_jpeg)(const std::vector<unsigned char>& rgb, int width, int height, int quality,
+                             std::string& jpeg);
   /// EXR of all channels.
   std::string (*write_exr)(const Image& image, const std::string& file);
 };

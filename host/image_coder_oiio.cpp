@@ -44,16 +44,34 @@ std::string decode(std::string_view bytes, const std::string& format, const std:
   return {};
 }
 
-std::string encode_png(const std::vector<unsigned char>& rgb, int width, int height, std::string& png) {
-  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
+// In memory.
+std::string encode(const char* format, const OIIO::ImageSpec& spec, const std::vector<unsigned char>& rgb,
+                   std::string& file) {
   OIIO::Filesystem::IOVecOutput memory;
-  const auto output = OIIO::ImageOutput::create("png");
-  if (!output || !output->set_ioproxy(&memory) || !output->open("memory.png", spec) ||
+  const auto output = OIIO::ImageOutput::create(format);
+  if (!output || !output->set_ioproxy(&memory) || !output->open(std::string("memory.") + format, spec) ||
       !output->write_image(spec.format, rgb.data()) || !output->close())
     return reason(output);
-  png.assign(memory.buffer().begin(), memory.buffer().end());
+  file.assign(memory.buffer().begin(), memory.buffer().end());
   return {};
+}
+
+OIIO::ImageSpec display_spec(int width, int height) {
+  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  return spec;
+}
+
+std::string encode_png(const std::vector<unsigned char>& rgb, int width, int height, std::string& png) {
+  return encode("png", display_spec(width, height), rgb, png);
+}
+
+std::string encode_jpeg(const std::vector<unsigned char>& rgb, int width, int height, int quality,
+                        std::string& jpeg) {
+  OIIO::ImageSpec spec = display_spec(width, height);
+  spec.attribute("Compression", "jpeg:" + std::to_string(quality));
+  spec.attribute("jpeg:subsampling", "4:4:4");
+  return encode("jpeg", spec, rgb, jpeg);
 }
 
 std::string write_exr(const Image& image, const std::string& file) {
@@ -69,7 +87,7 @@ std::string write_exr(const Image& image, const std::string& file) {
   return {};
 }
 
-constexpr ImageCoder kCoder{decode, encode_png, write_exr};
+constexpr ImageCoder kCoder{decode, encode_png, encode_jpeg, write_exr};
 
 }  // namespace
 }  // namespace wale

@@ -6,6 +6,7 @@
 #include "geom/error.h"
 #include "geom/text_lines.h"
 #include "host/atomic_file.h"
+#include "host/display_picture.h"
 #include "host/exr_header.h"
 #include "host/image.h"
 #include "host/image_coder.h"
@@ -29,15 +30,6 @@ std::string suffix_of(const std::filesystem::path& file) {
 // Throws a user error that begins with `what` when a coder gave a reason.
 void require_coded(const std::string& failure, const std::string& what) {
   if (!failure.empty()) user_error("{}: {}", what, one_line(failure));
-}
-
-// Fixed dither in [0,1): the finaliser of MurmurHash3 on the pixel, so that smooth shades show no bands and the same
-// image gives the same bytes.
-double dither(int x, int y, int channel) {
-  uint32_t h = uint32_t(x) * 0x9E3779B1u ^ uint32_t(y) * 0x85EBCA77u ^ uint32_t(channel) * 0xC2B2AE3Du;
-  h = (h ^ (h >> 16)) * 0x85EBCA6Bu;
-  h = (h ^ (h >> 13)) * 0xC2B2AE35u;
-  return (h ^ (h >> 16)) * 0x1p-32;
 }
 
 // OpenImageIO's name of the format, from the first bytes. Left to itself the library tries every reader it has on a
@@ -73,15 +65,11 @@ void decode_srgb(Image& image, int alpha) {
   }
 }
 
-// The PNG is made in memory: OpenImageIO's writer does not notice a full disk.
-std::string png_file(const Image& image, double exposure, const std::string& view) {
-  std::string png;
-  const std::string failure =
-      image_coder().encode_png(display_bytes(image, exposure, view), image.width, image.height, png);
-  if (!failure.empty()) bug("PNG: {}", one_line(failure));
+void write_png(const Image& image, const std::filesystem::path& file, double exposure, const std::string& view) {
+  std::string png = display_png(image, exposure, view);
   if (const auto frame = image.attributes.find(kFrameAttribute); frame != image.attributes.end())
     add_png_text(png, frame->first, frame->second);
-  return png;
+  write_text_file(file, png);
 }
 
 void write_exr(const Image& image, const std::filesystem::path& file) {
@@ -91,27 +79,6 @@ void write_exr(const Image& image, const std::filesystem::path& file) {
 }
 
 }  // namespace
-
-std::vector<unsigned char> display_bytes(const Image& image, double exposure, const std::string& view) {
-  int rgb[3] = {0, 0, 0};
-  for (int c = 0; c < 3; ++c) {
-    const auto found = std::find(image.channels.begin(), image.channels.end(), std::string(1, "RGB"[c]));
-    rgb[c] = found != image.channels.end() ? int(found - image.channels.begin())
-                                           : std::min(c, int(image.channels.size()) - 1);
-  }
-  std::vector<unsigned char> bytes(size_t(image.width) * image.height * 3);
-  auto out = bytes.begin();
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const float* pixel = image.at(x, y);
-      const float linear[3] = {pixel[rgb[0]], pixel[rgb[1]], pixel[rgb[2]]};
-      float display[3];
-      view_transform(linear, exposure, view, display);
-      for (int c = 0; c < 3; ++c)
-        *out++ = static_cast<unsigned char>(std::min(255.0, std::floor(255.0 * display[c] + dither(x, y, c))));
-    }
-  return bytes;
-}
 
 Image read_image(const std::filesystem::path& file, bool finite) {
   std::error_code ignored;
@@ -152,7 +119,7 @@ void write_image(const Image& image, const std::filesystem::path& file, double e
     bug("write_image: {} values for {} x {} pixels of {} channels", image.pixels.size(), image.width, image.height,
         image.channels.size());
   if (suffix_of(file) == ".png")
-    write_text_file(file, png_file(image, exposure, view));
+    write_png(image, file, exposure, view);
   else
     write_exr(image, file);
 }

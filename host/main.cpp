@@ -12,6 +12,7 @@
 #include "host/cost/command.h"
 #include "host/device.h"
 #include "host/device_fault.h"
+#include "host/serve/command_serve.h"
 #include "host/suggest.h"
 
 namespace {
@@ -171,6 +172,14 @@ int run(int argc, char** argv) {
   add_device_options(*c, scene, "its number");
   c->add_option("-o,--output", output, "file to write")->required();
   c->callback([&] { status = wale::run_export(scene, output, loaders); });
+  wale::ServeArgs serve;
+  c = app.add_subcommand("serve", "edit a scene in a browser while it renders");
+  add_scene_options(*c, serve);
+  add_device_options(*c, serve, "its number");
+  c->add_option("--port", serve.port, "8737 unless given; 0 = any that is free")->check(CLI::Range(0, 65535));
+  c->add_option("--host", serve.host, "address to listen on; only this machine unless given");
+  c->add_option("--size", serve.size, "WIDTHxHEIGHT that the picture on the page fits into, 512x512 unless given");
+  c->callback([&] { status = wale::run_serve(serve, loaders); });
   wale::KnitArgs knit;
   c = app.add_subcommand("knit", "relax a stitch chart into a tile of yarn");
   add_knit_options(*c, knit);
@@ -185,7 +194,10 @@ int run(int argc, char** argv) {
   wale::bench::add_bench_options(*c, bench);
   c->callback([&] { status = wale::bench::run_bench(bench, loaders); });
   c = app.add_subcommand("devices", "list the OpenCL devices");
-  c->callback([&] { status = wale::run_devices(); });
+  c->callback([&] {
+    status = wale::run_devices();
+    wale::print_editor_note();
+  });
   c = app.add_subcommand("schema", "print the JSON Schema of scene files");
   c->callback([&] { status = wale::run_schema(); });
 

@@ -21,22 +21,6 @@ using Clock = std::chrono::steady_clock;
 
 double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-WFrame frame_of(const World& world, const IntegratorScene& integrator) {
-  WFrame frame{};
-  frame.seed = integrator.seed;
-  frame.max_depth = uint32_t(integrator.max_depth);
-  frame.roulette_depth = uint32_t(integrator.russian_roulette_depth);
-  frame.light_sampling = integrator.light_sampling == "mis" ? 0 : integrator.light_sampling == "light" ? 1 : 2;
-  if (world.first_hits_only) {  // a path that samples lights only ends with its last scattering event
-    frame.max_depth = 1;
-    frame.light_sampling = 1;
-  }
-  frame.opaque_shadows = integrator.ply_shadows == "opaque";
-  frame.lights = uint32_t(world.lights.lights.size());
-  frame.spheres = uint32_t(world.spheres.size());
-  return frame;
-}
-
 // Blocks small enough to be shared fairly: each device makes waves of as many as fill its pool.
 uint32_t block_size(uint32_t smallest_pool, uint64_t pixels, size_t devices) {
   const uint64_t tiles = std::min<uint64_t>(smallest_pool / kScrambles, pixels / (32 * devices)) / 64;
@@ -276,6 +260,22 @@ class Job {
 };
 
 }  // namespace
+
+WFrame frame_of(const World& world, const IntegratorScene& integrator) {
+  WFrame frame{};
+  frame.seed = integrator.seed;
+  frame.max_depth = uint32_t(integrator.max_depth);
+  frame.roulette_depth = uint32_t(integrator.russian_roulette_depth);
+  frame.light_sampling = integrator.light_sampling == "mis" ? 0 : integrator.light_sampling == "light" ? 1 : 2;
+  if (world.first_hits_only) {  // a path that samples lights only ends with its last scattering event
+    frame.max_depth = 1;
+    frame.light_sampling = 1;
+  }
+  frame.opaque_shadows = integrator.ply_shadows == "opaque";
+  frame.lights = uint32_t(world.lights.lights.size());
+  frame.spheres = uint32_t(world.spheres.size());
+  return frame;
+}
 
 uint32_t pool_of(const DeviceTraits& traits, const IntegratorScene& integrator, const RenderOptions& options) {
   return options.pool ? options.pool : integrator.pool ? integrator.pool : traits.pool;

@@ -36,6 +36,9 @@ struct RenderOptions {
 /// Paths in flight on a device: what the options say, else the scene, else the device's table of traits.
 uint32_t pool_of(const DeviceTraits& traits, const IntegratorScene& integrator, const RenderOptions& options);
 
+/// What the integrator tells the kernels; samples and paths are those of each wave.
+WFrame frame_of(const World& world, const IntegratorScene& integrator);
+
 /// What its programs are built for.
 Features features_of(const DeviceTraits& traits, const World& world, const IntegratorScene& integrator,
                      const RenderOptions& options);

@@ -50,7 +50,7 @@ JsonNode& member(JsonNode& object, const std::string& key, bool list, const std:
   return made;
 }
 
-// Sets what `keys` from `first` on lead to below the node; "*" leads to every element of a list.
+// Sets what `keys` from `first` on lead to below the node; "*" leads to every element of a list. Null takes a key away.
 void set(JsonNode& node, std::span<const std::string> keys, const JsonNode& value, const std::string& option,
          const std::string& path) {
   if (keys.empty()) {
@@ -68,6 +68,8 @@ void set(JsonNode& node, std::span<const std::string> keys, const JsonNode& valu
   else if (key == "*")
     user_error("{}: {} is {}; \"*\" stands for the elements of a list", option, path.empty() ? "the scene" : path,
                node.describe());
+  else if (node.kind == JsonNode::Kind::object && value.kind == JsonNode::Kind::null && (rest.empty() || !node.has(key)))
+    std::erase_if(node.members, [&](const auto& one) { return one.key == key; });
   else if (node.kind == JsonNode::Kind::object)
     set(member(node, key, !rest.empty() && rest.front() == "*", option), rest, value, option, below);
   else

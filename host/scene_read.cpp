@@ -5,6 +5,7 @@
 
 #include "geom/error.h"
 #include "host/animation.h"
+#include "host/file_fence.h"
 #include "host/scene.h"
 #include "host/scene_materials.h"
 #include "host/scene_nodes.h"
@@ -315,14 +316,26 @@ void check_names(const JsonNode& list, const std::string& path) {
         fail(*name, fmt::format("{}.{}.name", path, i), "\"{}\" is the name of another element too", name->text);
 }
 
-Scene scene_of(JsonNode root, const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+// Material files are joined before the schema is checked.
+void fence_materials(const JsonNode& root, const SchemaContext& context) {
+  const JsonNode* materials = root.find("materials");
+  if (!context.fence || !materials) return;
+  for (const auto& [name, place, node] : materials->members)
+    if (const JsonNode* named = node.find("file"); named && named->kind == JsonNode::Kind::string)
+      if (!context.fence->admits(std::filesystem::absolute(context.folder / named->text).lexically_normal()))
+        fail(*named, "materials." + name + ".file", "{}", context.fence->refusal(named->text));
+}
+
+Scene scene_of(JsonNode root, const std::filesystem::path& file, const std::vector<std::string>& overrides,
+               FileFence* fence = nullptr) {
   apply_overrides(root, overrides);
   apply_key_frames(root);
   if (root.has("animation")) apply_overrides(root, overrides);  // what they say goes before keys
-  SchemaContext context{1, std::filesystem::absolute(file).parent_path()};
+  SchemaContext context{1, std::filesystem::absolute(file).parent_path(), fence};
   // Lengths are converted while the document is checked, so the units are looked up first; a wrong word is found there.
   const JsonNode* units = root.find("units");
   if (units && units->text == "mm") context.metres_per_unit = 1e-3;
+  fence_materials(root, context);
   join_material_files(root, context.folder);
   check_schema(scene_type(), root, context);
 
@@ -371,6 +384,10 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
 Scene parse_scene(const std::string& text, const std::filesystem::path& file,
                   const std::vector<std::string>& overrides) {
   return scene_of(parse_json(text, file.string()), file, overrides);
+}
+
+Scene fenced_scene(const JsonNode& document, const std::filesystem::path& file, FileFence& fence) {
+  return scene_of(document, file, {}, &fence);
 }
 
 }  // namespace wale

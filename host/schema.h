@@ -23,6 +23,7 @@ struct Range {
   std::string text() const;
 };
 
+class FileFence;
 struct SchemaType;
 using Type = std::shared_ptr<const SchemaType>;
 
@@ -100,6 +101,7 @@ Type any();
 struct SchemaContext {
   double metres_per_unit = 1;
   std::filesystem::path folder;  ///< relative files start here
+  FileFence* fence = nullptr;    ///< asked for every file that a document names; null: any may be
 };
 
 /// Checks a document strictly and turns it into SI in place: lengths to metres, angles to radians, colours to three

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "geom/error.h"
+#include "host/file_fence.h"
 #include "host/schema.h"
 #include "host/suggest.h"
 
@@ -99,6 +100,7 @@ class Checker {
     need(node, Node::string, "a file name", path);
     const auto full = std::filesystem::absolute(context_.folder / node.text).lexically_normal();
     std::error_code ignored;
+    if (context_.fence && !context_.fence->admits(full)) fail(node.place, path, "{}", context_.fence->refusal(node.text));
     if (node.text.empty() || !std::filesystem::exists(full, ignored))
       fail(node.place, path, "no file \"{}\" (looked for {}); {}", node.text, full.string(), beside(full));
     if (!std::filesystem::is_regular_file(full, ignored)) fail(node.place, path, "{} is not a file", full.string());
@@ -213,7 +215,7 @@ class Checker {
       // A preset says lengths in metres, whatever the file's units; it goes through the same check, so that the objects
       // in it are filled in turn.
       JsonNode value = parse_option_value(property.preset, "preset of " + joined(path, property.name));
-      check_schema(*property.type, value, {1.0, context_.folder}, joined(path, property.name));
+      check_schema(*property.type, value, {1.0, context_.folder, context_.fence}, joined(path, property.name));
       value.place = node.place;
       node.members.push_back({property.name, node.place, std::move(value)});
     }

@@ -24,6 +24,7 @@ class Process {
   /// Exit status, 128 + signal when it died of one, -1 when it had to be killed after `seconds`.
   int wait(double seconds);
   double seconds() const;  ///< since the start
+  int pid() const { return pid_; }
 
  private:
   bool ended();

@@ -184,6 +184,17 @@ def scenes():
     write("overrides", "names", "fabrics.cloth.detail=fibres\nlights.sun.intensity=3\nmaterials.yarn.color=#ff8000\n")
 
 
+def requests():
+    token = "0123456789abcdef0123456789abcdef"
+    for name, path, body in [("edit", "/edit", '{"set": ["film.exposure=1"], "gesture": "a"}'),
+                             ("control", "/control", '{"control": "view.lit", "value": "both"}'),
+                             ("camera", "/camera", '{"orbit": [0.1, -0.2], "pan": [0, 1], "zoom": 1.5}'),
+                             ("save", "/save", '{"file": "edited.json", "replace": true}'), ("undo", "/undo", "{}")]:
+        write("request", name, f"POST {path} HTTP/1.1\r\nHost: localhost:8737\r\nX-Wale-Token: {token}\r\n"
+              f"Content-Type: application/json\r\nContent-Length: {len(body)}\r\nOrigin: http://localhost:8737\r\n\r\n{body}")
+    write("request", "page", f"GET /?token={token} HTTP/1.1\r\nHost: [::1]:8737\r\nSec-Fetch-Site: none\r\n\r\n")
+
+
 def images():
     picture = ["--pattern", "constant:color=.2,.5,.8", "6x5", "3"]
     for name, how in {"a.exr": ["-d", "half"], "b.exr": ["-d", "float", "--compression", "rle"], "c.hdr": [],
@@ -200,4 +211,5 @@ charts()
 meshes()
 sequences()
 scenes()
+requests()
 images()

@@ -89,6 +89,14 @@ const std::vector<Target>& targets() {
        {"fabrics.0.", "fabrics.cloth.", "lights.sun.", "materials.yarn.", "film.size=[", "=", "."},
        overrides},
       {"image", "images", "host/image_io.cpp host/exr_header.cpp host/png_chunks.cpp", false, {}, image},
+      {"request",
+       "requests to the editor",
+       "host/serve/request_head.cpp host/serve/editor_request.cpp",
+       false,
+       {"POST /edit HTTP/1.1\r\n", "Host: localhost\r\n", "X-Wale-Token: 0123456789abcdef0123456789abcdef\r\n",
+        "Content-Type: application/json\r\n", "Content-Length: ", "\r\n\r\n", "Origin: http://localhost\r\n", "\"set\"",
+        "\"gesture\"", "\"orbit\"", "?token="},
+       request},
   };
   return all;
 }

@@ -39,5 +39,6 @@ bool scene(std::string_view bytes);
 bool material(std::string_view bytes);
 bool overrides(std::string_view bytes);
 bool image(std::string_view bytes);
+bool request(std::string_view bytes);
 
 }  // namespace wale::fuzz

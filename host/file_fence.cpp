@@ -1,0 +1,33 @@
+#include "host/file_fence.h"
+
+#include <algorithm>
+
+#include "geom/error.h"
+
+namespace wale {
+namespace fs = std::filesystem;
+namespace {
+
+fs::path resolved(const fs::path& file) {
+  std::error_code failed;
+  const fs::path full = fs::weakly_canonical(file, failed);
+  return failed ? fs::path() : full;
+}
+
+}  // namespace
+
+FileFence::FileFence(const fs::path& folder) : folder_(resolved(folder.empty() ? fs::path(".") : folder)) {}
+
+bool FileFence::admits(const fs::path& file) {
+  const fs::path full = resolved(file);
+  if (full.empty()) return false;
+  if (!closed_) named_.insert(full);
+  if (named_.contains(full)) return true;
+  return std::mismatch(folder_.begin(), folder_.end(), full.begin(), full.end()).first == folder_.end();
+}
+
+std::string FileFence::refusal(const std::string& name) const {
+  return fmt::format("\"{}\" lies outside of the scene's folder; give a file in {}", name, folder_.string());
+}
+
+}  // namespace wale

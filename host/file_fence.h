@@ -1,0 +1,32 @@
+#pragma once
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "host/json_document.h"
+#include "host/scene.h"
+
+namespace wale {
+
+/// Which files a scene may name while others edit it: those below the scene's folder, symbolic links followed, and those
+/// that it named when it was opened. Nothing is told of other files, not even whether they exist.
+class FileFence {
+ public:
+  /// Open until closed: whatever is asked for is let in, and stays so.
+  explicit FileFence(const std::filesystem::path& folder);
+  void close() { closed_ = true; }
+
+  bool admits(const std::filesystem::path& file);
+  /// Why a name is refused.
+  std::string refusal(const std::string& name) const;
+
+ private:
+  std::filesystem::path folder_;
+  std::set<std::filesystem::path> named_;
+  bool closed_ = false;
+};
+
+/// The scene of a document, as parse_scene(), which names such files only.
+Scene fenced_scene(const JsonNode& document, const std::filesystem::path& file, FileFence& fence);
+
+}  // namespace wale

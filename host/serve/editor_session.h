@@ -1,0 +1,96 @@
+#pragma once
+#include <condition_variable>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/live_scene.h"
+#include "host/serve/controls.h"
+#include "host/serve/editor_request.h"
+#include "host/serve/progressive_render.h"
+#include "host/serve/viewer_feed.h"
+
+namespace wale {
+
+struct EditorOptions {
+  int width = 512, height = 512;  ///< of the picture on the page at most; the scene's film is scaled into it
+  size_t viewers = 8;
+  std::filesystem::path kernel_dir;
+};
+
+/// A scene that is edited and rendered. Requests come from any thread and are answered at once: they change the document
+/// and are checked by the schema. The thread of run() owns the device and renders the newest version: versions that
+/// come faster than they can be shown are skipped.
+class EditorSession {
+ public:
+  EditorSession(EditedScene scene, const EditorOptions& options);
+
+  /// Answers what is not the page itself.
+  HttpReply handle(const EditorRequest& request);
+
+  /// Renders until somebody asks for a stop or `stop_asked` says so. Throws device errors.
+  void run(std::span<const Device> device, const Loaders& loaders, const std::function<bool()>& stop_asked);
+  /// Ends run() and all streams. From any thread.
+  void stop();
+  /// Called by a reply to stop: when it has been sent, the server may go.
+  bool stopped() const;
+
+ private:
+  /// One picture on the page.
+  struct View {
+    std::string name;
+    std::vector<std::string> more;  ///< overrides beside the edits
+    Scene scene;
+  };
+  /// A version as run() renders it.
+  struct Version {
+    uint64_t revision = 0, scene = 0;
+    std::vector<std::string> edits;
+    std::vector<View> views;
+    std::string control;  ///< that asked for it last
+    double goal = 0;
+  };
+  struct Refused {
+    std::string control, line;
+  };
+
+  HttpReply changed(const std::function<void()>& change, const std::string& control);
+  void set_control(const EditorRequest& request);
+  void move_camera(const EditorRequest& request);
+  CameraScene camera() const;
+  HttpReply save(const EditorRequest& request);
+  HttpReply picture(int view);
+  std::vector<View> views_of() const;
+  Version newest();
+  std::string state_json();
+  void publish_state(bool now);
+  void publish_cost(const std::string& status, const Version& version, const LiveScene& live, const Redone& redone,
+                    const std::vector<std::unique_ptr<ProgressiveRender>>& renders);
+  void publish_picture(size_t view, uint64_t revision, const Scene& scene, ProgressiveRender& render);
+  void refuse(const Version& version, const std::string& line);
+
+  EditorOptions options_;
+  ViewerFeed feed_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  EditedScene edited_;
+  EditorSettings settings_;
+  uint64_t revision_ = 1;
+  std::string control_;           ///< that asked last
+  std::optional<Refused> fault_;    ///< of the last version that could not be made
+  CameraScene framed_;            ///< where the scene has no camera: how it was framed
+  bool stop_ = false, dirty_ = true;
+  std::chrono::steady_clock::time_point last_state_{};
+  struct Shown {
+    Image image;
+    double exposure = 0;
+    std::string view;
+  };
+  std::vector<std::shared_ptr<const Shown>> shown_;
+};
+
+}  // namespace wale

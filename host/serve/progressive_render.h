@@ -1,0 +1,67 @@
+#pragma once
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "host/render.h"
+
+namespace wale {
+
+/// How far a picture is.
+struct RenderState {
+  int shrink = 0;          ///< of the picture that can be shown: 4, 2 or 1 pixels on a side; 0 = none yet
+  uint32_t samples = 0;    ///< whole passes over the full picture
+  double error = 0;        ///< 95th percentile of its tiles' errors (host/tile_error.h); 0 = not known yet
+  double seconds = 0;      ///< of tracing since the restart
+  double mrays = 0;        ///< 1e6 rays a second, since the restart
+};
+
+/// A picture that can be had soon and gets better: a sixteenth of the pixels, a quarter, then pass after pass over all
+/// of them, in waves short enough that an edit need not wait. Kernels, buffers and films stay from version to version of
+/// the scene; programs are built with all that edits may bring in, but for the choices that are one or the other
+/// (docs/features.md).
+class ProgressiveRender {
+ public:
+  ProgressiveRender(const Device& device, std::filesystem::path kernel_dir);
+
+  /// Begins anew with this version of the scene.
+  void restart(const World& world, const IntegratorScene& integrator, const SceneDevice& scene);
+  /// Goes on with the same scene after another one has been on the device.
+  void resume(const World& world, const IntegratorScene& integrator, const SceneDevice& scene);
+
+  /// Traces one wave. True when the picture is worth showing again.
+  bool step();
+  /// The picture so far, channels R, G, B, at 1/shrink of the size; brings state().error up to date.
+  Image picture();
+  const RenderState& state() const { return state_; }
+  /// Seconds until the tiles' error is `goal`, as far as the last picture tells; nothing where it does not.
+  std::optional<double> seconds_to(double goal) const;
+  uint64_t bytes() const;
+  /// Rare events since it was made: samples that were not finite.
+  uint64_t not_finite() const;
+
+  static RenderOptions options(const std::filesystem::path& kernel_dir);
+
+ private:
+  struct Level {
+    int shrink;
+    std::unique_ptr<Wavefront> wave;
+    uint32_t tiles = 0;
+  };
+  void bind(const World& world, const IntegratorScene& integrator, const SceneDevice& scene, bool again);
+
+  const Device& device_;
+  RenderOptions options_;
+  WFrame frame_{};
+  int width_ = 0, height_ = 0;
+  std::array<Level, 3> levels_;
+  size_t level_ = 0;
+  uint32_t sample_ = 0, tile_ = 0;  ///< what is traced next on the level
+  double seconds_per_path_ = 0;
+  uint64_t rays_ = 0, lost_ = 0;
+  double last_picture_ = 0;
+  RenderState state_;
+};
+
+}  // namespace wale

@@ -1,0 +1,156 @@
+// `wale serve` as a process, under requests that no page sends. These are the tests that tests/sanitize.sh runs too.
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <thread>
+
+#include "host/serve/http_server.h"
+#include "tests/host/serve_client.h"
+
+namespace wale::test {
+namespace {
+
+class ServeServer : public Cli {
+ protected:
+  void SetUp() override {
+    Cli::SetUp();
+    if (!has_http_library()) GTEST_SKIP() << "built without cpp-httplib";
+    served_ = std::make_unique<Served>(folder_.path(), std::vector<std::string>{scene_, "--quiet", "--size", "64x64"});
+    ASSERT_TRUE(served_->up()) << served_->process().err();
+  }
+  void TearDown() override {
+    if (!served_ || !served_->up()) return;
+    EXPECT_EQ(served_->post("/stop", "{}").status, 200);
+    EXPECT_EQ(served_->process().wait(30), 0) << served_->process().err();
+    EXPECT_EQ(served_->process().err(), "");
+  }
+  void expect_alive() {
+    EXPECT_EQ(served_->ask("GET", "/state").status, 200);
+  }
+  std::unique_ptr<Served> served_;
+};
+
+TEST_F(ServeServer, HostileRequestsAreRefused) {
+  const Served& s = *served_;
+  const std::string good = R"({"set": ["film.exposure=1"]})", wrong(32, '0');
+  EXPECT_EQ(s.ask("GET", "/?token=" + s.token()).status, 200);
+  EXPECT_EQ(s.ask("GET", "/", "", "", &wrong).status, 401);
+  EXPECT_EQ(s.ask("POST", "/edit", good, "", &wrong).status, 401);
+  EXPECT_EQ(s.ask("POST", "/edit", good, "", nullptr, "evil.example").status, 403);
+  EXPECT_EQ(s.ask("POST", "/edit", good, "Origin: http://evil.example\r\n").status, 403);
+  for (const char* method : {"PUT", "DELETE", "OPTIONS", "TRACE", "HEAD", "PATCH"})
+    EXPECT_EQ(s.ask(method, "/edit").status, 405) << method;
+  for (const char* path : {"/../../etc/passwd", "/%2e%2e/etc/passwd", "/scene.json", "/.git/config", "//"})
+    EXPECT_EQ(s.ask("GET", path).status, 404) << path;
+  EXPECT_EQ(s.ask("POST", "/edit", std::string(70000, ' ')).status, 413);
+  EXPECT_EQ(s.post("/edit", "{\"set\": " + std::string(30000, '[')).status, 400) << "a bomb";
+  EXPECT_EQ(s.post("/edit", "{\"set\": [\"film.exposure=" + std::string(20000, '[') + "\"]}").status, 400);
+  EXPECT_EQ(s.post("/edit", "{\"set\": [\"" + std::string(30000, 'a') + ".=1\"]}").status, 400);
+  EXPECT_EQ(s.post("/edit", R"({"set": ["fabrics.0.mesh=/etc/passwd"]})").status, 400);
+  EXPECT_EQ(s.post("/edit", "{\"set\": [\"\xff\xfe=1\"]}").status, 400);
+  for (const char* name : {"../x.json", "/tmp/x.json", "x", ".x.json"})
+    EXPECT_EQ(s.post("/save", std::string("{\"file\": \"") + name + "\"}").status, 400) << name;
+  EXPECT_EQ(s.post("/save", R"({"file": "scene.json"})").status, 409);
+  EXPECT_EQ(s.raw("GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(100000, 'a')).status, 431);
+  EXPECT_EQ(s.raw("\x16\x03\x01\r\n\r\n").status, 400);
+  EXPECT_EQ(s.raw("GET / HTTP/1.1\r\nHost: localhost\r\nRange: bytes=0-" + std::string(4000, ',') + "\r\n\r\n").status, 400);
+  EXPECT_EQ(s.raw("POST /edit HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n5\r\n").status, 400);
+  // Two requests in one go: the second must not be answered with the first one's rights.
+  const auto two = s.raw("GET /state HTTP/1.1\r\nHost: localhost\r\n\r\nGET /state HTTP/1.1\r\nHost: localhost\r\nX-Wale-Token: " + s.token() + "\r\n\r\n");
+  EXPECT_EQ(two.status, 401);
+  EXPECT_EQ(two.body.find("controls"), std::string::npos);
+  expect_alive();
+}
+
+TEST_F(ServeServer, ErrorsAreTheLinesOfTheCommandLine) {
+  const auto reply = served_->post("/edit", R"({"set": ["film.exposure=99"]})");
+  EXPECT_EQ(reply.status, 400);
+  EXPECT_EQ(reply.body, "{\"error\": \"--set film.exposure=99: film.exposure: 99 is out of range; valid: -30 to 30\"}\n");
+}
+
+// One whose knit fails is found out later: the stream says so, and the scene is as before.
+TEST_F(ServeServer, AnEditThatCannotBeKnittedIsTakenBack) {
+  ASSERT_NE(served_->watch("image/jpeg", 120), "");
+  EXPECT_EQ(served_->post("/edit", R"({"set": ["fabrics.0.gauge.wales=0.1"]})").status, 200);
+  const std::string told = served_->watch("\"fault\": {", 60);
+  EXPECT_NE(told.find("cloth"), std::string::npos) << told.substr(0, 2000);
+  EXPECT_EQ(served_->ask("GET", "/state").body.find("wales=0.1\""), std::string::npos);
+}
+
+TEST_F(ServeServer, ManyEditsAreCoalescedAndTheLastOneIsShown) {
+  ASSERT_NE(served_->watch("image/jpeg", 120), "");
+  const auto start = std::chrono::steady_clock::now();
+  int accepted = 0;
+  for (int i = 0; i < 400; ++i) {
+    const auto reply = served_->post("/edit", fmt::format("{{\"set\": [\"film.exposure={:g}\"]}}", i * 0.01));
+    accepted += reply.status == 200;
+    EXPECT_TRUE(reply.status == 200 || reply.status == 429) << reply.status;
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_GT(accepted, 300);
+  std::printf("%d edits in %.2f s\n", accepted, seconds);
+  EXPECT_NE(served_->watch(fmt::format("X-Wale-Revision: {}\r\n", accepted + 1), 60), "");
+}
+
+TEST_F(ServeServer, ViewersThatLeaveOrSleepHarmNothing) {
+  ASSERT_NE(served_->watch("image/jpeg", 120), "");
+  const std::string request = fmt::format("GET /stream HTTP/1.1\r\nHost: localhost\r\nX-Wale-Token: {}\r\n\r\n", served_->token());
+  for (int i = 0; i < 12; ++i) {  // gone in mid-stream
+    const int socket = served_->connect();
+    ::send(socket, request.data(), request.size(), MSG_NOSIGNAL);
+    char bytes[100];
+    EXPECT_GT(::recv(socket, bytes, sizeof(bytes), 0), 0);
+    ::close(socket);
+    if (i % 4 == 3) std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+  }
+  std::vector<int> asleep;  // never read a byte
+  for (int i = 0; i < 6; ++i) {
+    asleep.push_back(served_->connect());
+    ::send(asleep.back(), request.data(), request.size(), MSG_NOSIGNAL);
+  }
+  const auto edit = served_->post("/edit", R"({"set": ["film.exposure=0.5"]})");
+  EXPECT_EQ(edit.status, 200);
+  EXPECT_NE(served_->watch("X-Wale-Revision: 2\r\n", 60), "");
+  for (const int socket : asleep) ::close(socket);
+}
+
+TEST_F(ServeServer, ConnectionsAreBoundedAndSlowOnesEnd) {
+  std::vector<int> idle;
+  for (int i = 0; i < 60; ++i) idle.push_back(served_->connect());
+  for (const int socket : idle) ::send(socket, "GET", 3, MSG_NOSIGNAL);  // and never a word more
+  std::this_thread::sleep_for(std::chrono::seconds(7));  // HttpLimits::read_seconds is 5
+  expect_alive();
+  for (const int socket : idle) ::close(socket);
+}
+
+TEST_F(ServeServer, TriesAtTheTokenAreFew) {
+  const std::string wrong(32, '1');
+  int refused = 0;
+  for (int i = 0; i < 200; ++i) refused += served_->ask("GET", "/state", "", "", &wrong).status == 429;
+  EXPECT_GT(refused, 50);
+  expect_alive();
+}
+
+TEST_F(ServeServer, EndsWithSignals) {
+  for (const int number : {SIGINT, SIGTERM}) {
+    Served other(folder_.path(), {scene_, "--quiet", "--size", "32x32"});
+    ASSERT_TRUE(other.up());
+    const int viewer = other.connect();
+    const std::string request = fmt::format("GET /stream HTTP/1.1\r\nHost: localhost\r\nX-Wale-Token: {}\r\n\r\n", other.token());
+    ::send(viewer, request.data(), request.size(), MSG_NOSIGNAL);
+    other.process().signal(number);
+    EXPECT_EQ(other.process().wait(60), 0) << number;
+    ::close(viewer);
+  }
+}
+
+TEST_F(ServeServer, APortThatIsTakenIsNamed) {
+  const Outcome run = run_wale({"serve", scene_, "--port", std::to_string(served_->port())});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.err.find("the port is taken"), std::string::npos) << run.err;
+}
+
+}  // namespace
+}  // namespace wale::test
