@@ -209,7 +209,7 @@ def main():
     memory.append(editor.rss())
     after = measure(editor, args.repeats, generator)
     memory.append(editor.rss())
-    print("| edit | median, s | 90 % | worst | median after %d random edits | 90 %% | worst |" % args.random)
+    print("| edit | median, s | 90 %% | worst | median after %d random edits | 90 %% | worst |" % args.random)
     print("|---|---|---|---|---|---|---|")
     for name in before:
         print("| " + name + " | " + " | ".join(f"{v:.3f}" for v in before[name] + after[name]) + " |")
