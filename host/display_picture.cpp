@@ -50,8 +50,7 @@ std::vector<unsigned char> display_bytes(const Image& image, double exposure, co
 // In memory: OpenImageIO's writer does not notice a full disk.
 std::string display_png(const Image& image, double exposure, const std::string& view) {
   std::string png;
-  require_coded("PNG",
-                image_coder().encode_png(display_bytes(image, exposure, view), image.width, image.height, png));
+  require_coded("PNG", image_coder().encode_png(display_bytes(image, exposure, view), image.width, image.height, png));
   return png;
 }
 

@@ -8,8 +8,8 @@
 
 namespace wale {
 
-/// Which files a scene may name while others edit it: those below the scene's folder, symbolic links followed, and those
-/// that it named when it was opened. Nothing is told of other files, not even whether they exist.
+/// Which files a scene may name while others edit it: those below the scene's folder, symbolic links followed, and
+/// those that it named when it was opened. Nothing is told of other files, not even whether they exist.
 class FileFence {
  public:
   /// Open until closed: whatever is asked for is let in, and stays so.

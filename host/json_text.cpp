@@ -39,7 +39,8 @@ std::string text_of(const JsonNode& node, size_t indent) {
     lines |= part.find('\n') != std::string::npos;
   }
   const char *open = list ? "[" : "{", *close = list ? "]" : "}";
-  if (parts.empty() || (!lines && indent + length < kLine)) return open + fmt::format("{}", fmt::join(parts, ", ")) + close;
+  if (parts.empty() || (!lines && indent + length < kLine))
+    return open + fmt::format("{}", fmt::join(parts, ", ")) + close;
   const std::string margin(indent + 2, ' ');
   return fmt::format("{}\n{}{}\n{}{}", open, margin, fmt::join(parts, ",\n" + margin), std::string(indent, ' '), close);
 }

@@ -10,7 +10,8 @@ struct CameraMove {
   double zoom = 1;                   ///< factor on the distance, or on the height of an orthographic picture
 };
 
-/// The camera after a step. It keeps its `up`, from which it stays 2 degrees away, and a distance of 1e-6 to 1e5 metres.
+/// The camera after a step. It keeps its `up`, from which it stays 2 degrees away, and a distance of 1e-6 to 1e5
+/// metres.
 CameraScene moved_camera(CameraScene camera, const CameraMove& move);
 
 }  // namespace wale

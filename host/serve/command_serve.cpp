@@ -73,8 +73,7 @@ int run_serve(const ServeArgs& args, const Loaders& loaders) {
   const bool six = args.host.find(':') != std::string::npos;
   fmt::print("http://{}:{}/?token={}\n", six ? "[" + args.host + "]" : args.host, server->port(), gate.token);
   std::fflush(stdout);
-  if (!args.quiet)
-    fmt::print(stderr, "note: open this address in a browser; whoever has it may edit. Ctrl-C ends\n");
+  if (!args.quiet) fmt::print(stderr, "note: open this address in a browser; whoever has it may edit. Ctrl-C ends\n");
   if (!loopback(args.host))
     fmt::print(stderr,
                "warning: --host {}: others on the network can reach the editor, and what is sent is not encrypted; "

@@ -28,7 +28,8 @@ struct Axes {
 
 std::string hex_color(const Rgb& linear) {
   std::string out = "#";
-  for (const double v : linear) out += fmt::format("{:02x}", int(std::lround(255 * linear_to_srgb(std::clamp(v, 0.0, 1.0)))));
+  for (const double v : linear)
+    out += fmt::format("{:02x}", int(std::lround(255 * linear_to_srgb(std::clamp(v, 0.0, 1.0)))));
   return out;
 }
 

@@ -40,7 +40,8 @@ TileFacts tile_facts(const FabricScene& fabric) {
     const Pattern tile = load_pattern(fabric.pattern);
     FabricScene plain = fabric;
     plain.palette.reset();
-    found = known.emplace(key, TileFacts{tile.period, glm::max(tile.stitches, ivec2(1)), yarn_colors(plain, tile)}).first;
+    found =
+        known.emplace(key, TileFacts{tile.period, glm::max(tile.stitches, ivec2(1)), yarn_colors(plain, tile)}).first;
   }
   TileFacts facts = found->second;
   if (fabric.palette) facts.palette = *fabric.palette;
@@ -76,8 +77,7 @@ class Table {
 
   // A number that one key holds.
   Control& number(const std::string& path, const std::string& group, const std::string& label, const std::string& doc,
-                  double low, double high, double step, double value, const std::string& unit = "",
-                  Texts first = {}) {
+                  double low, double high, double step, double value, const std::string& unit = "", Texts first = {}) {
     Control& c = add({path, group, label, path, doc, Control::Kind::number, low, high, step, unit});
     c.number = value;
     c.set = [path, first](double v, const std::string&) {
@@ -122,8 +122,9 @@ class Table {
     const FabricScene& opened = edited_.opened().fabrics[std::min(f, edited_.opened().fabrics.size() - 1)];
     std::string file = opened.pattern.file.string();
     if (!file.empty()) words.emplace_back(own, opened.pattern.file.filename().string());
-    Control& c = choice(at + "pattern", "Pattern", named(f, "Pattern"), "tile of stitches (docs/patterns.md)", words,
-                        fabric.pattern.file.empty() ? fabric.pattern.builtin.empty() ? "stockinette" : fabric.pattern.builtin : own);
+    Control& c = choice(
+        at + "pattern", "Pattern", named(f, "Pattern"), "tile of stitches (docs/patterns.md)", words,
+        fabric.pattern.file.empty() ? fabric.pattern.builtin.empty() ? "stockinette" : fabric.pattern.builtin : own);
     c.set = [path = at + "pattern", own, file](double, const std::string& text) {
       return Texts{path + "=" + (text == own ? json_string(file) : "{\"builtin\": " + json_string(text) + "}")};
     };
@@ -172,10 +173,10 @@ class Table {
     const std::string at = fmt::format("fabrics.{}.", f);
     number(at + "yarn.plies", "Yarn", named(f, "Plies"), "plies twisted into one yarn", 1, 8, 1, spec.plies);
     constexpr double kHundredRadii = 100, kLeastPitch = 2;
-    Control& twist = number(at + "yarn.twist_pitch", "Yarn", named(f, "Twist"),
-                            "turns of the plies per 100 yarn radii; negative = left-handed", -kHundredRadii / kLeastPitch,
-                            kHundredRadii / kLeastPitch, 0.5,
-                            spec.twist_pitch == 0 ? 0 : kHundredRadii / spec.twist_pitch);
+    Control& twist =
+        number(at + "yarn.twist_pitch", "Yarn", named(f, "Twist"),
+               "turns of the plies per 100 yarn radii; negative = left-handed", -kHundredRadii / kLeastPitch,
+               kHundredRadii / kLeastPitch, 0.5, spec.twist_pitch == 0 ? 0 : kHundredRadii / spec.twist_pitch);
     twist.unit = "turns";
     twist.set = [path = twist.path](double v, const std::string&) {
       return Texts{path + "=" + (std::abs(v) < 0.1 ? "0" : plain_number(kHundredRadii / v))};
@@ -184,7 +185,9 @@ class Table {
            spec.thickness);
     constexpr const char* kDetails[] = {"none", "paper", "maps", "fibres"};
     choice(at + "detail", "Yarn", named(f, "Fibre detail"), "how much of the fibres is seen",
-           {{"none", "none: smooth plies"}, {"paper", "as in KNIT21"}, {"maps", "maps of fibres"},
+           {{"none", "none: smooth plies"},
+            {"paper", "as in KNIT21"},
+            {"maps", "maps of fibres"},
             {"fibres", "every fibre (about 100 times the memory)"}},
            kDetails[size_t(spec.detail)]);
     number(at + "flyaways.hairs", "Yarn", named(f, "Hairs"), "loose fibres with one free end", 0, 10, 0.1,
@@ -218,7 +221,8 @@ class Table {
     };
     if (!m->yarn.stripes.empty() && node->has("stripes"))
       return several("stripes", m->yarn.stripes.size(), [&](size_t i) {
-        color(fmt::format("{}stripes.{}.color", at, i), fmt::format("Stripe {}, {}", i + 1, m->name), m->yarn.stripes[i].color);
+        color(fmt::format("{}stripes.{}.color", at, i), fmt::format("Stripe {}, {}", i + 1, m->name),
+              m->yarn.stripes[i].color);
       });
     if (!m->yarn.plies.empty() && node->has("plies"))
       return several("plies", m->yarn.plies.size(), [&](size_t i) {
@@ -248,7 +252,12 @@ class Table {
     if (!m || !colored_.insert("materials." + m->name).second) return;
     const std::string at = "materials." + m->name + ".", more = scene_.fabrics.size() > 1 ? ", " + m->name : "";
     choice(at + "preset", "Fibre", "Fibre" + more, "measured appearance to start from",
-           {{"wool", "wool"}, {"cotton", "cotton"}, {"silk", "silk"}, {"polyester", "polyester"}, {"acrylic", "acrylic"}, {"mohair", "mohair"}},
+           {{"wool", "wool"},
+            {"cotton", "cotton"},
+            {"silk", "silk"},
+            {"polyester", "polyester"},
+            {"acrylic", "acrylic"},
+            {"mohair", "mohair"}},
            m->yarn.preset);
     number(at + "gloss", "Fibre", "Gloss" + more, "0 = dull, 1 = shiny, 0.5 = the fibre's own", 0, 1, 0.01,
            m->yarn.gloss.value_or(0.5), "", without(at, *node, {"roughness"}));
@@ -269,7 +278,8 @@ class Table {
     number(at + "intensity", "Light", name + " brightness", "factor on its radiance", 0, 4, 0.02,
            intensity && intensity->is_number() ? intensity->number : 1);
     if (sky && !light.file.empty())
-      number(at + "rotation", "Light", "Sky rotation", "about up", -180, 180, 1, light.rotation * 57.29577951308232, "°");
+      number(at + "rotation", "Light", "Sky rotation", "about up", -180, 180, 1, light.rotation * 57.29577951308232,
+             "°");
     if (light.kind != LightScene::Kind::quad && light.kind != LightScene::Kind::sphere) return;
     const dvec3 target = light.kind == LightScene::Kind::quad ? light.look_at : scene_.camera.look_at;
     const dvec3 up = scene_.camera_given ? edited_.opened().camera.up : dvec3(0, 1, 0);
@@ -308,13 +318,17 @@ class Table {
 
   void view() {
     Control& lit = choice("view.lit", "View", "Lit from", "the lamps as they are, or all on one side of the cloth",
-                          {{"scene", "as in the scene"}, {"front", "the front"}, {"back", "behind"}, {"both", "front and behind, side by side"}},
+                          {{"scene", "as in the scene"},
+                           {"front", "the front"},
+                           {"back", "behind"},
+                           {"both", "front and behind, side by side"}},
                           settings_.lit);
     lit.path.clear();
     lit.set = nullptr;
     if (scene_.camera_given && !scene_.camera.orthographic)
       number("camera.fov", "View", "Angle of view", "vertical", 2, 90, 0.5, scene_.camera.fov * 57.29577951308232, "°");
-    number("film.exposure", "View", "Exposure", "stops; of the picture on the screen", -6, 6, 0.1, scene_.film.exposure, "stops");
+    number("film.exposure", "View", "Exposure", "stops; of the picture on the screen", -6, 6, 0.1, scene_.film.exposure,
+           "stops");
     choice("film.view", "View", "Tone curve", "of the picture on the screen",
            {{"neutral", "neutral"}, {"srgb", "none (sRGB)"}}, scene_.film.view);
   }
@@ -330,7 +344,8 @@ class Table {
       if (all && now.empty()) now = preset.name;
     }
     if (now.empty()) words.emplace_back(now = "(the scene's)", "the scene's own mixture");
-    Control& c = choice("accuracy", "Accuracy", "Preset", "what every accuracy option is set to (docs/accuracy.md)", words, now);
+    Control& c =
+        choice("accuracy", "Accuracy", "Preset", "what every accuracy option is set to (docs/accuracy.md)", words, now);
     c.path = "integrator, fabrics.*";
     c.set = [](double, const std::string& text) {
       return text == "(the scene's)" ? Texts{} : accuracy_preset(text).overrides();
@@ -353,12 +368,14 @@ void require(const Control& control, const JsonNode& value) {
   if (control.kind == Control::Kind::number) {
     if (!value.is_number()) user_error("{}: a number is needed here, not {}", control.label, value.describe());
     if (!(value.number >= control.low && value.number <= control.high))
-      user_error("{}: {:g} is out of range; valid: {:.4g} to {:.4g}", control.label, value.number, control.low, control.high);
+      user_error("{}: {:g} is out of range; valid: {:.4g} to {:.4g}", control.label, value.number, control.low,
+                 control.high);
     if (control.step == 1 && control.id.ends_with("plies") && value.number != std::floor(value.number))
       user_error("{}: a whole number is needed here, not {:g}", control.label, value.number);
     return;
   }
-  if (value.kind != JsonNode::Kind::string) user_error("{}: a text is needed here, not {}", control.label, value.describe());
+  if (value.kind != JsonNode::Kind::string)
+    user_error("{}: a text is needed here, not {}", control.label, value.describe());
   if (control.kind == Control::Kind::color) {
     const std::string& hex = value.text;
     if (hex.size() != 7 || hex[0] != '#' || hex.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
@@ -392,8 +409,9 @@ void set_setting(EditorSettings& settings, const Control& control, const JsonNod
 std::string controls_json(const std::vector<Control>& controls) {
   Texts out;
   for (const Control& c : controls) {
-    std::string one = fmt::format("{{\"id\": {}, \"group\": {}, \"label\": {}, \"path\": {}, \"doc\": {}, ", json_string(c.id),
-                                  json_string(c.group), json_string(c.label), json_string(c.path), json_string(c.doc));
+    std::string one =
+        fmt::format("{{\"id\": {}, \"group\": {}, \"label\": {}, \"path\": {}, \"doc\": {}, ", json_string(c.id),
+                    json_string(c.group), json_string(c.label), json_string(c.path), json_string(c.doc));
     if (c.kind == Control::Kind::number)
       one += fmt::format("\"type\": \"number\", \"min\": {}, \"max\": {}, \"step\": {}, \"unit\": {}, \"value\": {}}}",
                          plain_number(c.low), plain_number(c.high), plain_number(c.step), json_string(c.unit),
@@ -404,7 +422,8 @@ std::string controls_json(const std::vector<Control>& controls) {
       Texts words;
       for (const auto& [name, shown] : c.words)
         words.push_back(fmt::format("[{}, {}]", json_string(name), json_string(shown)));
-      one += fmt::format("\"type\": \"choice\", \"words\": [{}], \"value\": {}}}", fmt::join(words, ", "), json_string(c.text));
+      one += fmt::format("\"type\": \"choice\", \"words\": [{}], \"value\": {}}}", fmt::join(words, ", "),
+                         json_string(c.text));
     }
     out.push_back(std::move(one));
   }

@@ -21,11 +21,11 @@ struct Control {
   std::string path;  ///< key of the scene; empty for a setting of the editor
   std::string doc;   ///< one line for the user
   Kind kind = Kind::number;
-  double low = 0, high = 1, step = 0.01;                    ///< number
-  std::string unit{};                                       ///< number
+  double low = 0, high = 1, step = 0.01;                     ///< number
+  std::string unit{};                                        ///< number
   std::vector<std::pair<std::string, std::string>> words{};  ///< choice: value and what is shown
-  double number = 0;                                        ///< value of a number
-  std::string text{};                                       ///< value of a choice, or of a colour as "#rrggbb"
+  double number = 0;                                         ///< value of a number
+  std::string text{};                                        ///< value of a choice, or of a colour as "#rrggbb"
   std::function<std::vector<std::string>(double number, const std::string& text)> set{};  ///< overrides
 };
 

@@ -108,7 +108,8 @@ void EditedScene::edit(const std::vector<std::string>& set, const std::string& g
       user_error("--set {}: \"{}\" is not edited", one_line(one.substr(0, 60)), path);
     add(next, one);
   }
-  if (next.size() > kMostEdits) user_error("more than {} values are edited; save the scene and open it anew", kMostEdits);
+  if (next.size() > kMostEdits)
+    user_error("more than {} values are edited; save the scene and open it anew", kMostEdits);
   Edits before = edits_;
   take(std::move(next));
   if (gesture.empty() || gesture != gesture_) past_.push_back(std::move(before));

@@ -11,10 +11,11 @@ HttpReply editor_page() {
   reply.body = embedded_page().at("editor.html");
   const std::string mark = "{{NONCE}}";
   for (size_t at; (at = reply.body.find(mark)) != std::string::npos;) reply.body.replace(at, mark.size(), nonce);
-  reply.headers.emplace_back("Content-Security-Policy",
-                             "default-src 'none'; script-src 'nonce-" + nonce + "'; style-src 'nonce-" + nonce +
-                                 "'; img-src 'self' blob: data:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
-                                 "frame-ancestors 'none'");
+  reply.headers.emplace_back(
+      "Content-Security-Policy",
+      "default-src 'none'; script-src 'nonce-" + nonce + "'; style-src 'nonce-" + nonce +
+          "'; img-src 'self' blob: data:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
+          "frame-ancestors 'none'");
   return reply;
 }
 

@@ -22,10 +22,10 @@ struct Route {
   Kind kind;
 };
 constexpr Route kRoutes[] = {
-    {"GET", "/", Kind::page},        {"GET", "/stream", Kind::stream}, {"GET", "/state", Kind::state},
-    {"POST", "/edit", Kind::edit},   {"POST", "/control", Kind::control}, {"POST", "/camera", Kind::camera},
-    {"POST", "/undo", Kind::undo},   {"POST", "/redo", Kind::redo},    {"POST", "/reset", Kind::reset},
-    {"POST", "/save", Kind::save},   {"GET", "/picture.png", Kind::picture}, {"POST", "/stop", Kind::stop},
+    {"GET", "/", Kind::page},      {"GET", "/stream", Kind::stream},       {"GET", "/state", Kind::state},
+    {"POST", "/edit", Kind::edit}, {"POST", "/control", Kind::control},    {"POST", "/camera", Kind::camera},
+    {"POST", "/undo", Kind::undo}, {"POST", "/redo", Kind::redo},          {"POST", "/reset", Kind::reset},
+    {"POST", "/save", Kind::save}, {"GET", "/picture.png", Kind::picture}, {"POST", "/stop", Kind::stop},
 };
 
 std::string_view path_of(const HttpRequest& request) {
@@ -53,9 +53,7 @@ std::string_view query(const HttpRequest& request, std::string_view wanted) {
   return found;
 }
 
-bool loopback_name(std::string_view name) {
-  return name == "localhost" || name == "127.0.0.1" || name == "[::1]";
-}
+bool loopback_name(std::string_view name) { return name == "localhost" || name == "127.0.0.1" || name == "[::1]"; }
 
 // "a.b.c.d" or "[...]": nobody's name.
 bool in_digits(std::string_view name) {
@@ -85,7 +83,8 @@ class Members {
   }
   bool flag(const char* key) {
     const JsonNode* node = take(key);
-    if (node && node->kind != Node::boolean) user_error("{}: true or false is needed here, not {}", key, node->describe());
+    if (node && node->kind != Node::boolean)
+      user_error("{}: true or false is needed here, not {}", key, node->describe());
     return node && node->boolean;
   }
   double number(const JsonNode& node, const char* key, double low, double high) const {
@@ -116,7 +115,8 @@ void read_edit(Members& members, EditorRequest& out) {
   const JsonNode* set = members.take("set");
   if (!set || set->kind != Node::array || set->items.empty())
     user_error("set: a list of \"key.path=value\" is needed{}", set ? ", not " + set->describe() : "");
-  if (set->items.size() > kMostOverrides) user_error("set: {} overrides; at most {}", set->items.size(), kMostOverrides);
+  if (set->items.size() > kMostOverrides)
+    user_error("set: {} overrides; at most {}", set->items.size(), kMostOverrides);
   for (const JsonNode& item : set->items) {
     if (item.kind != Node::string) user_error("set: a text \"key.path=value\" is needed here, not {}", item.describe());
     if (item.text.size() > kLongestOverride) user_error("set: an override is longer than {} bytes", kLongestOverride);
@@ -166,7 +166,8 @@ bool host_allowed(const EditorGate& gate, std::string_view header) {
   if (colon != header.npos && header.find(']', colon) == header.npos) {
     name = header.substr(0, colon);
     const std::string_view port = header.substr(colon + 1);
-    if (port.empty() || port.size() > 5 || !std::all_of(port.begin(), port.end(), [](char c) { return c >= '0' && c <= '9'; }))
+    if (port.empty() || port.size() > 5 ||
+        !std::all_of(port.begin(), port.end(), [](char c) { return c >= '0' && c <= '9'; }))
       return false;
   }
   if (loopback_name(name)) return true;

@@ -112,15 +112,14 @@ HttpReply EditorSession::changed(const std::function<void()>& change, const std:
 
 void EditorSession::set_control(const EditorRequest& request) {
   const std::vector<Control> controls = controls_of(edited_, settings_);
-  const auto found = std::find_if(controls.begin(), controls.end(), [&](const Control& c) { return c.id == request.control; });
+  const auto found =
+      std::find_if(controls.begin(), controls.end(), [&](const Control& c) { return c.id == request.control; });
   if (found == controls.end()) user_error("\"{}\": there is no such control", one_line(request.control));
   if (!found->set) return set_setting(settings_, *found, request.value);
   if (const Texts set = overrides_of(*found, request.value); !set.empty()) edited_.edit(set, request.gesture);
 }
 
-CameraScene EditorSession::camera() const {
-  return edited_.scene().camera_given ? edited_.scene().camera : framed_;
-}
+CameraScene EditorSession::camera() const { return edited_.scene().camera_given ? edited_.scene().camera : framed_; }
 
 void EditorSession::move_camera(const EditorRequest& r) {
   const CameraScene now = camera();
@@ -141,7 +140,8 @@ HttpReply EditorSession::save(const EditorRequest& request) {
   const std::lock_guard lock(mutex_);
   try {
     const auto file = edited_.save(request.file, request.replace);
-    if (file.empty()) return refusal(409, fmt::format("{} exists; save under another name, or replace it", request.file));
+    if (file.empty())
+      return refusal(409, fmt::format("{} exists; save under another name, or replace it", request.file));
     HttpReply reply;
     reply.body = fmt::format("{{\"saved\": {}}}\n", json_string(file.filename().string()));
     return reply;
@@ -228,13 +228,14 @@ void EditorSession::publish_cost(const std::string& status, const Version& versi
     known &= to_goal.has_value();
     left += to_goal.value_or(0);
   }
-  feed_.publish("cost", "application/json",
-                fmt::format("{{\"status\": \"{}\", \"revision\": {}, \"samples\": {}, \"error\": {:.4g}, \"goal\": {:g}, "
-                            "\"seconds\": {:.3g}, \"seconds_to_goal\": {}, \"mrays\": {:.3g}, \"segments\": {}, "
-                            "\"knitted\": {}, \"geometry\": {}, \"edit_seconds\": {:.3g}, \"viewers\": {}}}",
-                            status, version.revision, samples, error, version.goal, seconds,
-                            known ? fmt::format("{:.3g}", left) : "null", mrays, segments, redone.knitted,
-                            redone.fabrics, redone.host_seconds + redone.device_seconds, feed_.viewers()));
+  feed_.publish(
+      "cost", "application/json",
+      fmt::format("{{\"status\": \"{}\", \"revision\": {}, \"samples\": {}, \"error\": {:.4g}, \"goal\": {:g}, "
+                  "\"seconds\": {:.3g}, \"seconds_to_goal\": {}, \"mrays\": {:.3g}, \"segments\": {}, "
+                  "\"knitted\": {}, \"geometry\": {}, \"edit_seconds\": {:.3g}, \"viewers\": {}}}",
+                  status, version.revision, samples, error, version.goal, seconds,
+                  known ? fmt::format("{:.3g}", left) : "null", mrays, segments, redone.knitted, redone.fabrics,
+                  redone.host_seconds + redone.device_seconds, feed_.viewers()));
 }
 
 void EditorSession::publish_picture(size_t view, uint64_t revision, const Scene& scene, ProgressiveRender& render) {

@@ -21,9 +21,9 @@ struct EditorOptions {
   std::filesystem::path kernel_dir;
 };
 
-/// A scene that is edited and rendered. Requests come from any thread and are answered at once: they change the document
-/// and are checked by the schema. The thread of run() owns the device and renders the newest version: versions that
-/// come faster than they can be shown are skipped.
+/// A scene that is edited and rendered. Requests come from any thread and are answered at once: they change the
+/// document and are checked by the schema. The thread of run() owns the device and renders the newest version: versions
+/// that come faster than they can be shown are skipped.
 class EditorSession {
  public:
   EditorSession(EditedScene scene, const EditorOptions& options);
@@ -81,7 +81,7 @@ class EditorSession {
   EditorSettings settings_;
   uint64_t revision_ = 1;
   std::string control_;           ///< that asked last
-  std::optional<Refused> fault_;    ///< of the last version that could not be made
+  std::optional<Refused> fault_;  ///< of the last version that could not be made
   CameraScene framed_;            ///< where the scene has no camera: how it was framed
   bool stop_ = false, dirty_ = true;
   std::chrono::steady_clock::time_point last_state_{};

@@ -8,9 +8,10 @@ namespace wale {
 std::unique_ptr<HttpServer> serve_http(const std::string& host, int port, const HttpLimits& limits,
                                        HttpHandlers handlers) {
   if (!has_http_library())
-    user_error("serve: {} is not beside the program: it is built where cpp-httplib is installed (apt-get install "
-               "libcpp-httplib-dev, then build again)",
-               kHttpLibrary);
+    user_error(
+        "serve: {} is not beside the program: it is built where cpp-httplib is installed (apt-get install "
+        "libcpp-httplib-dev, then build again)",
+        kHttpLibrary);
   static const auto* library = static_cast<const HttpLibrary*>(load_table(kHttpLibrary, kHttpFunction));
   std::string failure;
   auto server = library->listen(host, port, limits, std::move(handlers), failure);

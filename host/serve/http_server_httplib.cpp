@@ -25,7 +25,8 @@ class GuardedStream : public httplib::Stream {
     at_ = 0;
     body_left_ = 0;
     if (pending_.empty() && !ready(POLLIN, idle_seconds)) return false;
-    deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits_.read_seconds));
+    deadline_ =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits_.read_seconds));
     while (true) {
       if (const size_t end = pending_.find("\r\n\r\n"); end != std::string::npos) {
         head_ = pending_.substr(0, end + 4);
@@ -71,7 +72,8 @@ class GuardedStream : public httplib::Stream {
   }
 
   ssize_t write(const char* from, size_t size) override {
-    const auto until = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits_.write_seconds));
+    const auto until = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                          std::chrono::duration<double>(limits_.write_seconds));
     for (size_t sent = 0; sent < size;) {
       const double left = std::chrono::duration<double>(until - Clock::now()).count();
       if (left <= 0 || !ready(POLLOUT, left)) return -1;
@@ -115,9 +117,10 @@ class GuardedStream : public httplib::Stream {
 void fill(const HttpReply& reply, httplib::Response& out) {
   out.status = reply.status;
   for (const auto& [name, value] : reply.headers) out.set_header(name.c_str(), value);
-  for (const auto& [name, value] : {std::pair{"X-Content-Type-Options", "nosniff"}, std::pair{"Cache-Control", "no-store"},
-                                    std::pair{"Referrer-Policy", "no-referrer"}, std::pair{"X-Frame-Options", "DENY"},
-                                    std::pair{"Cross-Origin-Resource-Policy", "same-origin"}})
+  for (const auto& [name, value] :
+       {std::pair{"X-Content-Type-Options", "nosniff"}, std::pair{"Cache-Control", "no-store"},
+        std::pair{"Referrer-Policy", "no-referrer"}, std::pair{"X-Frame-Options", "DENY"},
+        std::pair{"Cross-Origin-Resource-Policy", "same-origin"}})
     out.set_header(name, value);
   if (!reply.stream) return out.set_content(reply.body, reply.type.c_str());
   out.set_chunked_content_provider(reply.type.c_str(), [stream = reply.stream](size_t, httplib::DataSink& sink) {
@@ -152,7 +155,9 @@ class Listener : public httplib::Server {
     Post(".*", handle);
   }
 
-  void begin() { thread_ = std::thread([this] { listen_after_bind(); }); }
+  void begin() {
+    thread_ = std::thread([this] { listen_after_bind(); });
+  }
   void end() {
     while (!is_running() && !ended_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ended_ = true;
@@ -204,9 +209,9 @@ class Listener : public httplib::Server {
 
   // Without the library: nothing of such a request reaches it.
   static void answer(GuardedStream& stream, const HttpReply& reply) {
-    std::string text = "HTTP/1.1 " + std::to_string(reply.status) + " Refused\r\nConnection: close\r\nContent-Type: " +
-                       reply.type + "\r\nContent-Length: " + std::to_string(reply.body.size()) +
-                       "\r\nX-Content-Type-Options: nosniff\r\n";
+    std::string text =
+        "HTTP/1.1 " + std::to_string(reply.status) + " Refused\r\nConnection: close\r\nContent-Type: " + reply.type +
+        "\r\nContent-Length: " + std::to_string(reply.body.size()) + "\r\nX-Content-Type-Options: nosniff\r\n";
     for (const auto& [name, value] : reply.headers) text += name + ": " + value + "\r\n";
     text += "\r\n" + reply.body;
     stream.write(text.data(), text.size());
@@ -245,8 +250,9 @@ std::unique_ptr<HttpServer> listen(const std::string& host, int port, const Http
   auto server = std::make_unique<Server>(limits, std::move(handlers));
   errno = 0;
   if (server->bind(host, port)) return server;
-  failure = errno == EADDRINUSE ? "the port is taken by another program; give another --port, or 0 for any free one"
-                                : std::string("cannot be listened on") + (errno ? std::string(": ") + std::strerror(errno) : "");
+  failure = errno == EADDRINUSE
+                ? "the port is taken by another program; give another --port, or 0 for any free one"
+                : std::string("cannot be listened on") + (errno ? std::string(": ") + std::strerror(errno) : "");
   return nullptr;
 }
 

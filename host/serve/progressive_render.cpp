@@ -112,7 +112,8 @@ bool ProgressiveRender::step() {
 }
 
 Image ProgressiveRender::picture() {
-  const Level& level = *std::find_if(levels_.begin(), levels_.end(), [&](const Level& l) { return l.shrink == state_.shrink; });
+  const Level& level =
+      *std::find_if(levels_.begin(), levels_.end(), [&](const Level& l) { return l.shrink == state_.shrink; });
   const int w = (width_ + level.shrink - 1) / level.shrink, h = (height_ + level.shrink - 1) / level.shrink;
   const PixelSums sums = level.wave->film().read(0, level.tiles * kTilePixels);
   if (state_.samples >= 2) {

@@ -10,16 +10,16 @@ namespace wale {
 
 /// How far a picture is.
 struct RenderState {
-  int shrink = 0;          ///< of the picture that can be shown: 4, 2 or 1 pixels on a side; 0 = none yet
-  uint32_t samples = 0;    ///< whole passes over the full picture
-  double error = 0;        ///< 95th percentile of its tiles' errors (host/tile_error.h); 0 = not known yet
-  double seconds = 0;      ///< of tracing since the restart
-  double mrays = 0;        ///< 1e6 rays a second, since the restart
+  int shrink = 0;        ///< of the picture that can be shown: 4, 2 or 1 pixels on a side; 0 = none yet
+  uint32_t samples = 0;  ///< whole passes over the full picture
+  double error = 0;      ///< 95th percentile of its tiles' errors (host/tile_error.h); 0 = not known yet
+  double seconds = 0;    ///< of tracing since the restart
+  double mrays = 0;      ///< 1e6 rays a second, since the restart
 };
 
 /// A picture that can be had soon and gets better: a sixteenth of the pixels, a quarter, then pass after pass over all
-/// of them, in waves short enough that an edit need not wait. Kernels, buffers and films stay from version to version of
-/// the scene; programs are built with all that edits may bring in, but for the choices that are one or the other
+/// of them, in waves short enough that an edit need not wait. Kernels, buffers and films stay from version to version
+/// of the scene; programs are built with all that edits may bring in, but for the choices that are one or the other
 /// (docs/features.md).
 class ProgressiveRender {
  public:

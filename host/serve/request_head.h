@@ -17,8 +17,8 @@ struct RequestHead {
   HttpRequest request;
 };
 
-/// Reads the head of an HTTP/1.1 request, up to and including its empty line, strictly (RFC 9112): a method of letters, a
-/// target that begins with "/", headers without blanks before the colon, no continued lines, no control characters.
+/// Reads the head of an HTTP/1.1 request, up to and including its empty line, strictly (RFC 9112): a method of letters,
+/// a target that begins with "/", headers without blanks before the colon, no continued lines, no control characters.
 /// Also refused is what the editor's page never sends and a library might be led astray by: two lengths, encoded or
 /// chunked bodies, ranges, expectations, other protocols.
 RequestHead read_request_head(std::string_view head);

@@ -14,8 +14,8 @@ constexpr std::chrono::seconds kSignOfLife{1};
 
 std::string part_of(const std::string& topic, const std::string& type, const std::string& body,
                     const std::vector<std::pair<std::string, std::string>>& headers) {
-  std::string out = fmt::format("--{}\r\nContent-Type: {}\r\nContent-Length: {}\r\nX-Wale-Topic: {}\r\n", kBoundary, type,
-                                body.size(), topic);
+  std::string out = fmt::format("--{}\r\nContent-Type: {}\r\nContent-Length: {}\r\nX-Wale-Topic: {}\r\n", kBoundary,
+                                type, body.size(), topic);
   for (const auto& [name, value] : headers) out += name + ": " + value + "\r\n";
   return out + "\r\n" + body + "\r\n";
 }

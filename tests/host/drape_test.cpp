@@ -76,7 +76,9 @@ TEST(Drape, ComesToRestAndNothingGoesThroughAnything) {
   std::vector<dvec3> before;
   for (int frame = 0; frame < 80; ++frame, cloth.advance()) {
     const std::vector<dvec3>& x = cloth.positions();
-    if (frame % 2 == 0) EXPECT_EQ(crossings(mesh, x), 0u) << "frame " << frame;
+    if (frame % 2 == 0) {
+      EXPECT_EQ(crossings(mesh, x), 0u) << "frame " << frame;
+    }
     double nearest = 1, longest = 0;  // of the middles of triangles, and of threads
     for (const auto& t : mesh.triangle) {
       nearest = std::min(nearest, glm::length((x[t[0]] + x[t[1]] + x[t[2]]) / 3.0));

@@ -82,7 +82,8 @@ Served::Reply Served::raw(const std::string& bytes, double wait) const {
 
 Served::Reply Served::ask(const std::string& method, const std::string& path, const std::string& body,
                           const std::string& more, const std::string* token, const std::string& host) const {
-  std::string text = method + " " + path + " HTTP/1.1\r\nHost: " + (host.empty() ? fmt::format("127.0.0.1:{}", port_) : host) +
+  std::string text = method + " " + path +
+                     " HTTP/1.1\r\nHost: " + (host.empty() ? fmt::format("127.0.0.1:{}", port_) : host) +
                      "\r\nX-Wale-Token: " + (token ? *token : token_) + "\r\n" + more;
   if (method == "POST") text += fmt::format("Content-Type: application/json\r\nContent-Length: {}\r\n", body.size());
   return raw(text + "\r\n" + body);

@@ -16,8 +16,8 @@ TEST(ServePage, EveryControlChangesThePictureAsItSays) {
   TemporaryFolder folder;
   std::filesystem::copy_file(source / "scenes/swatch_front.json", folder / "scene.json");
   const std::string log = (folder / "log.txt").string();
-  const int status = std::system(("timeout 900 python3 " + (source / "tests/host/serve_page.py").string() + " " + WALE_PROGRAM +
-                                  " " + (folder / "scene.json").string() + " >" + log + " 2>&1")
+  const int status = std::system(("timeout 900 python3 " + (source / "tests/host/serve_page.py").string() + " " +
+                                  WALE_PROGRAM + " " + (folder / "scene.json").string() + " >" + log + " 2>&1")
                                      .c_str());
   if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "Chromium is not installed (apt-get install chromium)";
   EXPECT_EQ(status, 0) << file_text(log);

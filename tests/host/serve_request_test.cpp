@@ -54,18 +54,28 @@ TEST(ServeRequest, TokensAreRandomAndComparedWhole) {
 
 TEST(ServeRequest, HeadsAreReadStrictly) {
   EXPECT_EQ(head_status("GET / HTTP/1.1\r\nHost: a\r\n\r\n"), 0);
-  for (const char* bad :
-       {"", "\r\n\r\n", "GET / HTTP/1.0\r\nHost: a\r\n\r\n", "get / HTTP/1.1\r\nHost: a\r\n\r\n",
-        "GET http://a/ HTTP/1.1\r\nHost: a\r\n\r\n", "GET /\r\nHost: a\r\n\r\n", "GET / HTTP/1.1\r\n\r\n",
-        "GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n", "GET / HTTP/1.1\r\nHost : a\r\n\r\n",
-        "GET / HTTP/1.1\r\nHost: a\r\n folded\r\n\r\n", "GET /\x01 HTTP/1.1\r\nHost: a\r\n\r\n",
-        "GET / HTTP/1.1\r\nHost: a\r\nX: \x01\r\n\r\n", "GET / HTTP/1.1\nHost: a\n\n",
-        "POST / HTTP/1.1\r\nHost: a\r\nContent-Length: -1\r\n\r\n", "POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 1e3\r\n\r\n",
-        "POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 99999999999999999999\r\n\r\n",
-        "POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 1\r\nContent-Length: 2\r\n\r\n",
-        "POST / HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n",
-        "POST / HTTP/1.1\r\nHost: a\r\nContent-Encoding: gzip\r\n\r\n", "GET / HTTP/1.1\r\nHost: a\r\nRange: bytes=0-1\r\n\r\n",
-        "POST / HTTP/1.1\r\nHost: a\r\nExpect: 100-continue\r\n\r\n", "GET / HTTP/1.1\r\nHost: a\r\n\r\nmore"})
+  for (const char* bad : {"",
+                          "\r\n\r\n",
+                          "GET / HTTP/1.0\r\nHost: a\r\n\r\n",
+                          "get / HTTP/1.1\r\nHost: a\r\n\r\n",
+                          "GET http://a/ HTTP/1.1\r\nHost: a\r\n\r\n",
+                          "GET /\r\nHost: a\r\n\r\n",
+                          "GET / HTTP/1.1\r\n\r\n",
+                          "GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n",
+                          "GET / HTTP/1.1\r\nHost : a\r\n\r\n",
+                          "GET / HTTP/1.1\r\nHost: a\r\n folded\r\n\r\n",
+                          "GET /\x01 HTTP/1.1\r\nHost: a\r\n\r\n",
+                          "GET / HTTP/1.1\r\nHost: a\r\nX: \x01\r\n\r\n",
+                          "GET / HTTP/1.1\nHost: a\n\n",
+                          "POST / HTTP/1.1\r\nHost: a\r\nContent-Length: -1\r\n\r\n",
+                          "POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 1e3\r\n\r\n",
+                          "POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 99999999999999999999\r\n\r\n",
+                          "POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 1\r\nContent-Length: 2\r\n\r\n",
+                          "POST / HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n",
+                          "POST / HTTP/1.1\r\nHost: a\r\nContent-Encoding: gzip\r\n\r\n",
+                          "GET / HTTP/1.1\r\nHost: a\r\nRange: bytes=0-1\r\n\r\n",
+                          "POST / HTTP/1.1\r\nHost: a\r\nExpect: 100-continue\r\n\r\n",
+                          "GET / HTTP/1.1\r\nHost: a\r\n\r\nmore"})
     EXPECT_EQ(head_status(bad), 400) << bad;
   EXPECT_EQ(head_status("GET /" + std::string(2000, 'a') + " HTTP/1.1\r\nHost: a\r\n\r\n"), 414);
   EXPECT_EQ(head_status("GET / HTTP/1.1\r\nHost: a\r\nX: " + std::string(9000, 'a') + "\r\n\r\n"), 431);
@@ -83,14 +93,16 @@ TEST(ServeRequest, OnlyWhoHasTheAddressIsServed) {
   EXPECT_EQ(status("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n"), 401);
   EXPECT_EQ(status("GET /?token=" + kToken + "&token=" + kToken + " HTTP/1.1\r\nHost: localhost\r\n\r\n"), 401);
   EXPECT_EQ(status("GET /state?token=" + kToken + " HTTP/1.1\r\nHost: localhost\r\n\r\n"), 401) << "not by address";
-  for (const char* host : {"evil.example", "127.0.0.1.evil.example", "localhost.", "localhost:x", "10.0.0.1", "[::2]", ""})
+  for (const char* host :
+       {"evil.example", "127.0.0.1.evil.example", "localhost.", "localhost:x", "10.0.0.1", "[::2]", ""})
     EXPECT_EQ(status(post("/edit", body, "", host), body), 403) << host;
   for (const char* host : {"127.0.0.1", "127.0.0.1:8737", "localhost:9000", "[::1]:8737"})
     EXPECT_EQ(status(post("/edit", body, "", host), body), 200) << host;
   EXPECT_EQ(posted("/edit", body, "Origin: http://localhost:1\r\n"), 200);
-  for (const char* more : {"Origin: http://evil.example\r\n", "Origin: null\r\n", "Origin: https://localhost:1\r\n",
-                           "Origin: http://localhost:2\r\n", "Sec-Fetch-Site: cross-site\r\n", "Sec-Fetch-Site: same-site\r\n",
-                           "Origin: http://localhost:1\r\nOrigin: http://localhost:1\r\n"})
+  for (const char* more :
+       {"Origin: http://evil.example\r\n", "Origin: null\r\n", "Origin: https://localhost:1\r\n",
+        "Origin: http://localhost:2\r\n", "Sec-Fetch-Site: cross-site\r\n", "Sec-Fetch-Site: same-site\r\n",
+        "Origin: http://localhost:1\r\nOrigin: http://localhost:1\r\n"})
     EXPECT_EQ(posted("/edit", body, more), 403) << more;
   const EditorGate open{kToken, "0.0.0.0"};
   EXPECT_TRUE(host_allowed(open, "192.168.1.7:8737"));
@@ -105,14 +117,22 @@ TEST(ServeRequest, MethodsPathsAndBodiesAreChecked) {
   EXPECT_EQ(status("DELETE /edit HTTP/1.1\r\nHost: localhost\r\nX-Wale-Token: " + kToken + "\r\n\r\n"), 405);
   EXPECT_EQ(posted("/edit", std::string(1001, ' ')), 413);
   EXPECT_EQ(status("POST /edit HTTP/1.1\r\nHost: localhost\r\nX-Wale-Token: " + kToken + "\r\n\r\n"), 411);
-  EXPECT_EQ(status("POST /edit HTTP/1.1\r\nHost: localhost\r\nContent-Type: text/plain\r\nContent-Length: 2\r\nX-Wale-Token: " +
-                   kToken + "\r\n\r\n", "{}"), 415);
-  EXPECT_EQ(status("GET /state HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\nX-Wale-Token: " + kToken + "\r\n\r\n"), 400);
-  for (const char* bad : {"", "{", "[]", "null", "{}", R"({"set": []})", R"({"set": "a=1"})", R"({"set": [1]})", R"({"set": ["a=1"], "more": 1})",
-                          R"({"set": ["a=1"], "set": ["a=1"]})", R"({"set": ["a=1"], "gesture": 3})"})
+  EXPECT_EQ(
+      status(
+          "POST /edit HTTP/1.1\r\nHost: localhost\r\nContent-Type: text/plain\r\nContent-Length: 2\r\nX-Wale-Token: " +
+              kToken + "\r\n\r\n",
+          "{}"),
+      415);
+  EXPECT_EQ(
+      status("GET /state HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\nX-Wale-Token: " + kToken + "\r\n\r\n"),
+      400);
+  for (const char* bad :
+       {"", "{", "[]", "null", "{}", R"({"set": []})", R"({"set": "a=1"})", R"({"set": [1]})",
+        R"({"set": ["a=1"], "more": 1})", R"({"set": ["a=1"], "set": ["a=1"]})", R"({"set": ["a=1"], "gesture": 3})"})
     EXPECT_EQ(posted("/edit", bad), 400) << bad;
   EXPECT_EQ(posted("/edit", "{\"set\": " + std::string(400, '[') + std::string(400, ']') + "}"), 400) << "nesting";
-  for (const char* bad : {R"({"orbit": [1]})", R"({"orbit": [1e9, 0]})", R"({"zoom": 0})", R"({"zoom": "2"})", R"({"pan": [0, 1e400]})"})
+  for (const char* bad :
+       {R"({"orbit": [1]})", R"({"orbit": [1e9, 0]})", R"({"zoom": 0})", R"({"zoom": "2"})", R"({"pan": [0, 1e400]})"})
     EXPECT_EQ(posted("/camera", bad), 400) << bad;
   EXPECT_EQ(posted("/camera", R"({"orbit": [0.1, 0], "zoom": 1.5})"), 200);
   EXPECT_EQ(posted("/control", R"({"control": "a"})"), 400);

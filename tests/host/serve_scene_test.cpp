@@ -43,7 +43,8 @@ TEST_F(ServeScene, EditsAreOverridesThatTheSchemaChecks) {
   const uint64_t version = scene.version();
   const std::string line = user_message([&] { scene.edit({"film.exposure=99"}, ""); });
   EXPECT_EQ(line, "--set film.exposure=99: film.exposure: 99 is out of range; valid: -30 to 30");
-  EXPECT_NE(user_message([&] { scene.edit({"materials.yarn.glos=1"}, ""); }).find("did you mean \"gloss\"?"), std::string::npos);
+  EXPECT_NE(user_message([&] { scene.edit({"materials.yarn.glos=1"}, ""); }).find("did you mean \"gloss\"?"),
+            std::string::npos);
   EXPECT_NE(user_message([&] { scene.edit({"units=m"}, ""); }).find("not edited"), std::string::npos);
   EXPECT_EQ(scene.version(), version) << "a refused edit changes nothing";
   EXPECT_EQ(scene.scene().film.exposure, 1);
@@ -89,17 +90,25 @@ TEST_F(ServeScene, NoFileOutsideOfTheFolderIsNamed) {
   folder.write("own.obj", "v 0 0 0\n");
   std::filesystem::create_symlink(secret, folder / "link.obj");
   scene.edit({"fabrics.0.mesh=own.obj"}, "");
-  for (const std::string& name : {secret.string(), std::string("link.obj"), "../" + other.path().filename().string() + "/secret.obj",
-                                  std::string("/etc/passwd"), std::string("/nonexistent/x"), std::string("..")})
-    for (const char* key : {"fabrics.0.mesh=", "fabrics.0.pattern=", "materials.yarn.file=", "lights.0={\"type\":\"environment\",\"file\":"}) {
+  for (const std::string& name :
+       {secret.string(), std::string("link.obj"), "../" + other.path().filename().string() + "/secret.obj",
+        std::string("/etc/passwd"), std::string("/nonexistent/x"), std::string("..")})
+    for (const char* key : {"fabrics.0.mesh=", "fabrics.0.pattern=", "materials.yarn.file=",
+                            "lights.0={\"type\":\"environment\",\"file\":"}) {
       const std::string set = key[0] == 'l' ? key + ("\"" + name + "\"}") : key + name;
-      EXPECT_NE(user_message([&] { scene.edit({set}, ""); }).find("lies outside of the scene's folder"), std::string::npos) << set;
+      EXPECT_NE(user_message([&] { scene.edit({set}, ""); }).find("lies outside of the scene's folder"),
+                std::string::npos)
+          << set;
     }
+  EXPECT_NE(
+      user_message([&] { scene.edit({"fabrics.0.mesh={\"frames\": \"/etc/####.obj\"}"}, ""); }).find("lies outside"),
+      std::string::npos);
 }
 
 TEST_F(ServeScene, SavesIntoItsFolderOnlyAndAsks) {
   scene.edit({"film.exposure=1", "fabrics.0.uv_metres=null", "fabrics.0.gauge={\"wales\": 30}"}, "");
-  for (const char* name : {"", "a", ".json", "../a.json", "/tmp/a.json", "a/b.json", "..json", "a.exr", "a\n.json", "-a.json", "a b.json"})
+  for (const char* name :
+       {"", "a", ".json", "../a.json", "/tmp/a.json", "a/b.json", "..json", "a.exr", "a\n.json", "-a.json", "a b.json"})
     EXPECT_NE(user_message([&] { scene.save(name, true); }).find("no plain name"), std::string::npos) << name;
   EXPECT_EQ(folder.files(), 1u);
   EXPECT_EQ(scene.save("edited.json", false), folder / "edited.json");
@@ -123,7 +132,8 @@ TEST_F(ServeScene, TheCommandLineRendersTheSame) {
             "wale render " + file.string() + " -o picture.png --set 'materials.yarn.color=#102030' --error 0.05");
 }
 
-// Each control, set to each of its ends or words, is valid and shows in the scene; its value is then what it was set to.
+// Each control, set to each of its ends or words, is valid and shows in the scene; its value is then what it was set
+// to.
 TEST_F(ServeScene, EveryControlSetsWhatItSays) {
   const std::vector<Control> controls = controls_of(scene, settings);
   ASSERT_GT(controls.size(), 15u);

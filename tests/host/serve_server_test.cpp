@@ -26,9 +26,7 @@ class ServeServer : public Cli {
     EXPECT_EQ(served_->process().wait(30), 0) << served_->process().err();
     EXPECT_EQ(served_->process().err(), "");
   }
-  void expect_alive() {
-    EXPECT_EQ(served_->ask("GET", "/state").status, 200);
-  }
+  void expect_alive() { EXPECT_EQ(served_->ask("GET", "/state").status, 200); }
   std::unique_ptr<Served> served_;
 };
 
@@ -55,10 +53,13 @@ TEST_F(ServeServer, HostileRequestsAreRefused) {
   EXPECT_EQ(s.post("/save", R"({"file": "scene.json"})").status, 409);
   EXPECT_EQ(s.raw("GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(100000, 'a')).status, 431);
   EXPECT_EQ(s.raw("\x16\x03\x01\r\n\r\n").status, 400);
-  EXPECT_EQ(s.raw("GET / HTTP/1.1\r\nHost: localhost\r\nRange: bytes=0-" + std::string(4000, ',') + "\r\n\r\n").status, 400);
+  EXPECT_EQ(s.raw("GET / HTTP/1.1\r\nHost: localhost\r\nRange: bytes=0-" + std::string(4000, ',') + "\r\n\r\n").status,
+            400);
   EXPECT_EQ(s.raw("POST /edit HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n5\r\n").status, 400);
   // Two requests in one go: the second must not be answered with the first one's rights.
-  const auto two = s.raw("GET /state HTTP/1.1\r\nHost: localhost\r\n\r\nGET /state HTTP/1.1\r\nHost: localhost\r\nX-Wale-Token: " + s.token() + "\r\n\r\n");
+  const auto two =
+      s.raw("GET /state HTTP/1.1\r\nHost: localhost\r\n\r\nGET /state HTTP/1.1\r\nHost: localhost\r\nX-Wale-Token: " +
+            s.token() + "\r\n\r\n");
   EXPECT_EQ(two.status, 401);
   EXPECT_EQ(two.body.find("controls"), std::string::npos);
   expect_alive();
@@ -67,7 +68,8 @@ TEST_F(ServeServer, HostileRequestsAreRefused) {
 TEST_F(ServeServer, ErrorsAreTheLinesOfTheCommandLine) {
   const auto reply = served_->post("/edit", R"({"set": ["film.exposure=99"]})");
   EXPECT_EQ(reply.status, 400);
-  EXPECT_EQ(reply.body, "{\"error\": \"--set film.exposure=99: film.exposure: 99 is out of range; valid: -30 to 30\"}\n");
+  EXPECT_EQ(reply.body,
+            "{\"error\": \"--set film.exposure=99: film.exposure: 99 is out of range; valid: -30 to 30\"}\n");
 }
 
 // One whose knit fails is found out later: the stream says so, and the scene is as before.
@@ -96,7 +98,8 @@ TEST_F(ServeServer, ManyEditsAreCoalescedAndTheLastOneIsShown) {
 
 TEST_F(ServeServer, ViewersThatLeaveOrSleepHarmNothing) {
   ASSERT_NE(served_->watch("image/jpeg", 120), "");
-  const std::string request = fmt::format("GET /stream HTTP/1.1\r\nHost: localhost\r\nX-Wale-Token: {}\r\n\r\n", served_->token());
+  const std::string request =
+      fmt::format("GET /stream HTTP/1.1\r\nHost: localhost\r\nX-Wale-Token: {}\r\n\r\n", served_->token());
   for (int i = 0; i < 12; ++i) {  // gone in mid-stream
     const int socket = served_->connect();
     ::send(socket, request.data(), request.size(), MSG_NOSIGNAL);
@@ -120,7 +123,7 @@ TEST_F(ServeServer, ConnectionsAreBoundedAndSlowOnesEnd) {
   std::vector<int> idle;
   for (int i = 0; i < 60; ++i) idle.push_back(served_->connect());
   for (const int socket : idle) ::send(socket, "GET", 3, MSG_NOSIGNAL);  // and never a word more
-  std::this_thread::sleep_for(std::chrono::seconds(7));  // HttpLimits::read_seconds is 5
+  std::this_thread::sleep_for(std::chrono::seconds(7));                  // HttpLimits::read_seconds is 5
   expect_alive();
   for (const int socket : idle) ::close(socket);
 }
@@ -138,7 +141,8 @@ TEST_F(ServeServer, EndsWithSignals) {
     Served other(folder_.path(), {scene_, "--quiet", "--size", "32x32"});
     ASSERT_TRUE(other.up());
     const int viewer = other.connect();
-    const std::string request = fmt::format("GET /stream HTTP/1.1\r\nHost: localhost\r\nX-Wale-Token: {}\r\n\r\n", other.token());
+    const std::string request =
+        fmt::format("GET /stream HTTP/1.1\r\nHost: localhost\r\nX-Wale-Token: {}\r\n\r\n", other.token());
     ::send(viewer, request.data(), request.size(), MSG_NOSIGNAL);
     other.process().signal(number);
     EXPECT_EQ(other.process().wait(60), 0) << number;
