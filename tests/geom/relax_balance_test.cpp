@@ -26,7 +26,9 @@ PeriodicYarns tile_of(const char* chart, bool relaxed, double loop_length = 14) 
   PeriodicYarns yarns = loop_curves(knit_chart(parse_chart(chart, "test")), sizes);
   RelaxSettings settings;
   settings.force_tolerance = 1e-6;
-  if (relaxed) EXPECT_TRUE(relax(yarns, settings).converged) << chart;
+  if (relaxed) {
+    EXPECT_TRUE(relax(yarns, settings).converged) << chart;
+  }
   return yarns;
 }
 
