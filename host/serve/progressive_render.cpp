@@ -156,11 +156,4 @@ uint64_t ProgressiveRender::bytes() const {
   return sum;
 }
 
-uint64_t ProgressiveRender::not_finite() const {
-  uint64_t sum = 0;
-  for (const Level& level : levels_)
-    if (level.wave) sum = std::max<uint64_t>(sum, level.wave->counts().events[W_EVENT_NAN]);
-  return sum;
-}
-
 }  // namespace wale

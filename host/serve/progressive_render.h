@@ -38,8 +38,6 @@ class ProgressiveRender {
   /// Seconds until the tiles' error is `goal`, as far as the last picture tells; nothing where it does not.
   std::optional<double> seconds_to(double goal) const;
   uint64_t bytes() const;
-  /// Rare events since it was made: samples that were not finite.
-  uint64_t not_finite() const;
 
   static RenderOptions options(const std::filesystem::path& kernel_dir);
 
@@ -59,7 +57,7 @@ class ProgressiveRender {
   size_t level_ = 0;
   uint32_t sample_ = 0, tile_ = 0;  ///< what is traced next on the level
   double seconds_per_path_ = 0;
-  uint64_t rays_ = 0, lost_ = 0;
+  uint64_t rays_ = 0;
   double last_picture_ = 0;
   RenderState state_;
 };
