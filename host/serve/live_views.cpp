@@ -51,7 +51,7 @@ size_t LiveViews::segments() const {
 }
 
 std::optional<size_t> LiveViews::next(double goal) const {
-  const auto rank = [](const RenderState& s) { return std::pair(s.shrink ? 4 / s.shrink : 0, s.samples); };
+  const auto rank = [](const RenderState& s) { return std::pair(s.shrink ? 8 / s.shrink : 0, s.samples); };
   std::optional<size_t> least;
   for (size_t v = 0; v < renders_.size(); ++v)
     if (!done(renders_[v]->state(), goal) && (!least || rank(renders_[v]->state()) < rank(renders_[*least]->state())))
