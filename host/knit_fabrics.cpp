@@ -115,6 +115,15 @@ void knit(const Pattern& pattern, BaseMesh mesh, KnittedFabric& out) {
   if (out.knitting.place) out.fabric.mesh.rest = std::make_shared<BaseMesh>(out.fabric.mesh);
 }
 
+KnitOrder order_of(const Scene& scene, const FabricScene& fabric, const std::string& obstacle) {
+  KnitOrder order{fabric.mesh, fabric.transform, fabric.pattern, resolved(scene, fabric), obstacle};
+  if (!follows_mesh(fabric)) return order;
+  order.mesh.frame = 0;
+  order.transform.rotate = order.transform.translate = {0, 0, 0};
+  order.spec.storage = Storage::stored;
+  return order;
+}
+
 std::optional<size_t> find_same(const World* previous, const KnitOrder& order,
                                 const std::vector<KnittedFabric>& taken) {
   if (!previous) return {};
@@ -137,6 +146,24 @@ void follow_mesh(Fabric& fabric, const BaseMesh& moved) {
   compute_normals(mesh);
 }
 
+void refuse_more_segments(const Scene& scene, const Loaders& loaders, const World* previous, double most) {
+  std::vector<Pattern> patterns;
+  for (const FabricScene& fabric : scene.fabrics) patterns.push_back(load_pattern(fabric.pattern));
+  const std::string obstacle = lattice_obstacle_of_scene(scene, patterns);
+  for (size_t i = 0; i < scene.fabrics.size(); ++i) {
+    const KnitOrder order = order_of(scene, scene.fabrics[i], obstacle);
+    if (find_same(previous, order, {})) continue;
+    BaseMesh mesh = load_rest_mesh(order.mesh, loaders);
+    require_uv(mesh);
+    transform_mesh(mesh, order.transform);
+    refuse_if_out_of_reach(mesh, order.spec.name);
+    if (const double segments = double(estimate_segments(mesh, patterns[i], order.spec)); segments > most)
+      user_error(
+          "fabric \"{}\": about {:.3g} segments, at most {:.3g} here; use a coarser gauge, fewer hairs or less detail",
+          order.spec.name, segments, most);
+  }
+}
+
 std::vector<KnittedFabric> knit_fabrics(const Scene& scene, const Loaders& loaders,
                                         const std::function<void(double)>& progress, const World* previous) {
   static std::atomic<uint64_t> knitted_so_far{0};
@@ -149,14 +176,9 @@ std::vector<KnittedFabric> knit_fabrics(const Scene& scene, const Loaders& loade
   std::vector<size_t> numbers;  // to be knitted
   for (size_t i = 0; i < count; ++i) {
     const FabricScene& fabric = scene.fabrics[i];
-    KnitOrder order{fabric.mesh, fabric.transform, fabric.pattern, resolved(scene, fabric), obstacle};
+    const KnitOrder order = order_of(scene, fabric, obstacle);
     std::optional<MeshPlace> place;
-    if (follows_mesh(fabric)) {
-      place = MeshPlace{fabric.mesh.frame, fabric.transform.rotate, fabric.transform.translate};
-      order.mesh.frame = 0;
-      order.transform.rotate = order.transform.translate = {0, 0, 0};
-      order.spec.storage = Storage::stored;
-    }
+    if (follows_mesh(fabric)) place = MeshPlace{fabric.mesh.frame, fabric.transform.rotate, fabric.transform.translate};
     out[i].yarn_colors = yarn_colors(fabric, patterns[i]);
     out[i].of_previous = find_same(previous, order, out);
     // Meshes are read one after the other: their readers keep a state.

@@ -24,6 +24,9 @@ struct KnittedFabric {
 std::vector<KnittedFabric> knit_fabrics(const Scene& scene, const Loaders& loaders,
                                         const std::function<void(double)>& progress, const World* previous = nullptr);
 
+/// Throws a user error where knit_fabrics() would knit a fabric of more than `most` segments. Knits nothing.
+void refuse_more_segments(const Scene& scene, const Loaders& loaders, const World* previous, double most);
+
 /// Puts the mesh of a knitted fabric where `moved` is, which has the same triangles as the mesh that it was knitted on.
 void follow_mesh(Fabric& fabric, const BaseMesh& moved);
 

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <future>
 
+#include "host/knit_fabrics.h"
 #include "host/memory_needs.h"
 
 namespace wale {
@@ -20,6 +21,7 @@ LiveScene::LiveScene(std::span<const Device> devices, const Loaders& loaders, co
 Redone LiveScene::apply(const Scene& scene, const BuildProgress& progress) {
   Redone redone;
   auto start = Clock::now();
+  if (most_segments_ > 0) refuse_more_segments(scene, loaders_, &world_, most_segments_);
   World next = build_world(scene, loaders_, progress, {true, options_.editable, &world_});
   redone.host_seconds = since(start);
   start = Clock::now();

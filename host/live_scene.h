@@ -35,6 +35,9 @@ class LiveScene {
   /// upload_fabrics(); the version before then stays.
   Redone apply(const Scene& scene, const BuildProgress& progress = {});
 
+  /// Versions from now on are refused where a fabric would have to be knitted and have more segments.
+  void limit_segments(double most) { most_segments_ = most; }
+
   const Scene& scene() const { return scene_; }
   const World& world() const { return world_; }
   /// Valid until the next apply().
@@ -44,6 +47,7 @@ class LiveScene {
   std::span<const Device> devices_;
   const Loaders& loaders_;
   Options options_;
+  double most_segments_ = 0;
   Scene scene_;
   World world_;
   std::vector<std::unique_ptr<SceneDevice>> on_device_;

@@ -29,7 +29,7 @@ struct Control {
   std::function<std::vector<std::string>(double number, const std::string& text)> set{};  ///< overrides
 };
 
-/// The controls of a scene, in the order in which they are shown: one table, in controls.cpp.
+/// The controls of a scene, in the order in which they are shown: one table, in control_table.h and the files of its rows.
 std::vector<Control> controls_of(const EditedScene& scene, const EditorSettings& settings);
 
 /// Overrides that set a control to a value from the page. Throws a user error that names the control when the value is

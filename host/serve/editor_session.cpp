@@ -10,7 +10,6 @@
 #include "host/json_text.h"
 #include "host/serve/camera_move.h"
 #include "host/serve/control_values.h"
-#include "host/serve/light_sides.h"
 
 namespace wale {
 namespace {
@@ -21,19 +20,23 @@ using Texts = std::vector<std::string>;
 
 constexpr int kJpegQuality = 90;
 constexpr std::chrono::milliseconds kStateInterval{40}, kIdle{100};
-constexpr uint32_t kMostSamples = 1 << 16;
-
-std::string json_list(const Texts& texts) {
-  Texts out;
-  for (const std::string& text : texts) out.push_back(json_string(text));
-  return fmt::format("[{}]", fmt::join(out, ", "));
-}
+// An edit that would knit for minutes is refused: more than these, and than twice what the scene was opened with.
+constexpr double kMostSegments = 2e7;
 
 // The scene's film, made smaller until it fits.
 void fit(FilmScene& film, int width, int height) {
   const double share = std::min({1.0, double(width) / film.width, double(height) / film.height});
   film.width = std::max(1, int(std::lround(share * film.width)));
   film.height = std::max(1, int(std::lround(share * film.height)));
+}
+
+// What tracing depends on; the rest is how the picture is shown.
+std::vector<Scene> traced(std::vector<Scene> scenes) {
+  for (Scene& scene : scenes) {
+    scene.film.exposure = FilmScene{}.exposure;
+    scene.film.view = FilmScene{}.view;
+  }
+  return scenes;
 }
 
 CameraScene camera_of(const World& world) {
@@ -165,41 +168,18 @@ HttpReply EditorSession::picture(int view) {
 }
 
 // Under the lock.
-std::vector<EditorSession::View> EditorSession::views_of() const {
-  std::vector<View> views;
-  const auto add = [&](const char* name, Texts more) {
-    View view{name, std::move(more), {}};
-    view.scene = view.more.empty() ? edited_.scene() : edited_.scene_with(view.more);
-    fit(view.scene.film, options_.width, options_.height);
-    views.push_back(std::move(view));
-  };
-  const std::string& lit = settings_.lit;
-  if (lit == "scene") add("as in the scene", {});
-  if (lit == "front" || lit == "both") add("from the front", light_sides(edited_, camera(), LitSide::front));
-  if (lit == "back" || lit == "both") add("from behind", light_sides(edited_, camera(), LitSide::back));
-  return views;
-}
-
 EditorSession::Version EditorSession::newest() {
   const std::lock_guard lock(mutex_);
-  return {revision_, edited_.version(), edited_.edits(), views_of(), control_, settings_.goal};
+  Version version{revision_, edited_.version(), edited_.edits(), {}, control_, settings_.goal};
+  for (const EditorView& view : editor_views(edited_, settings_, camera())) {
+    version.scenes.push_back(view.more.empty() ? edited_.scene() : edited_.scene_with(view.more));
+    fit(version.scenes.back().film, options_.width, options_.height);
+  }
+  return version;
 }
 
-std::string EditorSession::state_json() {
-  Texts commands, names;
-  const std::string goal = fmt::format(" --error {:g}", settings_.goal);
-  for (const View& view : views_of()) {
-    commands.push_back(edited_.command(view.more, goal));
-    names.push_back(view.name);
-  }
-  return fmt::format(
-      "{{\"revision\": {}, \"scene\": {}, \"views\": {}, \"commands\": {}, \"can_undo\": {}, \"can_redo\": {}, "
-      "\"edits\": {},\n \"fault\": {},\n \"controls\": {}}}\n",
-      revision_, json_string(std::filesystem::path(edited_.scene().file).filename().string()), json_list(names),
-      json_list(commands), edited_.can_undo(), edited_.can_redo(), json_list(edited_.edits()),
-      fault_ ? fmt::format("{{\"control\": {}, \"line\": {}}}", json_string(fault_->control), json_string(fault_->line))
-             : "null",
-      controls_json(controls_of(edited_, settings_)));
+std::string EditorSession::state_json() const {
+  return state_message(revision_, edited_, settings_, editor_views(edited_, settings_, camera()), fault_);
 }
 
 // Not for each of many edits that come at once.
@@ -211,40 +191,14 @@ void EditorSession::publish_state(bool now) {
   last_state_ = Clock::now();
 }
 
-void EditorSession::publish_cost(const std::string& status, const Version& version, const LiveScene& live,
-                                 const Redone& redone, const std::vector<std::unique_ptr<ProgressiveRender>>& renders) {
-  size_t segments = 0;
-  for (const Fabric& fabric : live.world().fabrics) segments += fabric.report.segments;
-  uint32_t samples = renders.empty() ? 0 : kMostSamples;
-  double error = 0, mrays = 0, left = 0, seconds = 0;
-  bool known = !renders.empty();
-  for (const auto& render : renders) {
-    const RenderState& s = render->state();
-    samples = std::min(samples, s.samples);
-    error = std::max(error, s.error);
-    mrays += s.mrays / double(renders.size());
-    seconds += s.seconds;
-    const auto to_goal = render->seconds_to(version.goal);
-    known &= to_goal.has_value();
-    left += to_goal.value_or(0);
-  }
-  feed_.publish(
-      "cost", "application/json",
-      fmt::format("{{\"status\": \"{}\", \"revision\": {}, \"samples\": {}, \"error\": {:.4g}, \"goal\": {:g}, "
-                  "\"seconds\": {:.3g}, \"seconds_to_goal\": {}, \"mrays\": {:.3g}, \"segments\": {}, "
-                  "\"knitted\": {}, \"geometry\": {}, \"edit_seconds\": {:.3g}, \"viewers\": {}}}",
-                  status, version.revision, samples, error, version.goal, seconds,
-                  known ? fmt::format("{:.3g}", left) : "null", mrays, segments, redone.knitted, redone.fabrics,
-                  redone.host_seconds + redone.device_seconds, feed_.viewers()));
-}
-
-void EditorSession::publish_picture(size_t view, uint64_t revision, const Scene& scene, ProgressiveRender& render) {
-  auto shown = std::make_shared<Shown>(Shown{render.picture(), scene.film.exposure, scene.film.view});
+void EditorSession::publish_picture(size_t view, const Version& version, ProgressiveRender& render) {
+  const FilmScene& film = version.scenes[view].film;
+  auto shown = std::make_shared<Shown>(Shown{render.picture(), film.exposure, film.view});
   const std::string jpeg = display_jpeg(shown->image, shown->exposure, shown->view, kJpegQuality);
   const RenderState& s = render.state();
   feed_.publish(fmt::format("picture.{}", view), "image/jpeg", jpeg,
-                {{"X-Wale-Revision", std::to_string(revision)},
-                 {"X-Wale-Size", fmt::format("{}x{}", scene.film.width, scene.film.height)},
+                {{"X-Wale-Revision", std::to_string(version.revision)},
+                 {"X-Wale-Size", fmt::format("{}x{}", film.width, film.height)},
                  {"X-Wale-Shrink", std::to_string(s.shrink)},
                  {"X-Wale-Samples", std::to_string(s.samples)}});
   const std::lock_guard lock(mutex_);
@@ -259,37 +213,54 @@ void EditorSession::refuse(const Version& version, const std::string& line) {
     if (revision_ == version.revision) {
       edited_.withdraw(version.scene);
       ++revision_;
-      fault_ = Refused{version.control, line};
+      fault_ = RefusedEdit{version.control, line};
       dirty_ = true;
     }
   }
   publish_state(true);
 }
 
+// It is what the views show.
+void EditorSession::confirm(const Version& version) {
+  const std::lock_guard lock(mutex_);
+  for (size_t v = version.scenes.size(); v < shown_.size(); ++v) feed_.forget(fmt::format("picture.{}", v));
+  shown_.resize(version.scenes.size());
+  edited_.confirm(version.scene, version.edits);
+}
+
+bool EditorSession::newer_than(const Version& version) const {
+  const std::lock_guard lock(mutex_);
+  return stop_ || revision_ != version.revision;
+}
+
 void EditorSession::run(std::span<const Device> device, const Loaders& loaders,
                         const std::function<bool()>& stop_asked) {
-  LiveScene live(device, loaders, {ProgressiveRender::options(options_.kernel_dir), true});
-  Version version;
-  std::vector<std::unique_ptr<ProgressiveRender>> renders;
-  size_t on_device = 0;  // view
+  LiveViews views(device, loaders, options_.kernel_dir);
+  Version version;     // revision 0: none yet
+  uint64_t shown = 0;  // revision that the views are of
   Redone redone;
-  bool first = true, idle = false;
+  uint64_t told = 0;  // samples that were not finite
+  const auto publish_cost = [&](const std::string& status, const Version& of) {
+    feed_.publish("cost", "application/json",
+                  cost_message(status, of.revision, of.goal, views, redone, feed_.viewers()));
+  };
   while (!stop_asked() && !stopped()) {
     publish_state(false);
-    {
-      std::unique_lock lock(mutex_);
-      if (idle && revision_ == version.revision && !stop_) wake_.wait_for(lock, kIdle);
-    }
-    bool edited = false;
-    {
-      const std::lock_guard lock(mutex_);
-      edited = first || revision_ != version.revision;
-    }
-    if (edited) {
+    if (newer_than(version)) {
       Version next = newest();
-      publish_cost(first ? "starting" : "changing", next, live, redone, renders);
+      const bool first = version.revision == 0;
+      if (shown == version.revision && traced(next.scenes) == traced(version.scenes)) {
+        version = std::move(next);
+        shown = version.revision;
+        confirm(version);
+        for (size_t v = 0; v < views.count(); ++v)
+          if (views.render(v).state().shrink > 0) publish_picture(v, version, views.render(v));
+        publish_cost("rendering", version);
+        continue;
+      }
+      publish_cost(first ? "starting" : "changing", next);
       try {
-        redone = live.apply(next.views[0].scene);
+        redone = views.show(next.scenes);
       } catch (const Error& error) {
         if (error.fault() != wale::Fault::user || first) throw;
         version.revision = next.revision;  // refuse() makes another one when nobody else did
@@ -297,51 +268,36 @@ void EditorSession::run(std::span<const Device> device, const Loaders& loaders,
         continue;
       }
       version = std::move(next);
-      while (renders.size() < version.views.size())
-        renders.push_back(std::make_unique<ProgressiveRender>(device[0], options_.kernel_dir));
-      while (renders.size() > version.views.size()) {
-        renders.pop_back();
-        feed_.forget(fmt::format("picture.{}", renders.size()));
+      shown = version.revision;
+      if (first) {
+        views.limit_segments(std::max(kMostSegments, 2.0 * double(views.segments())));
+        const std::lock_guard lock(mutex_);
+        framed_ = camera_of(views.world());
       }
-      for (size_t v = 0; v < renders.size(); ++v) {
-        if (v > 0) live.apply(version.views[v].scene);
-        renders[v]->restart(live.world(), live.scene().integrator, *live.devices()[0].scene);
-      }
-      on_device = renders.size() - 1;
-      const std::lock_guard lock(mutex_);
-      shown_.resize(renders.size());
-      edited_.confirm(version.scene, version.edits);
-      if (first) framed_ = camera_of(live.world());
-      first = idle = false;
+      confirm(version);
     }
-    // The view that is farthest behind goes on until its picture is due.
-    const auto behind = std::min_element(renders.begin(), renders.end(), [](const auto& a, const auto& b) {
-      const auto rank = [](const RenderState& s) { return std::pair(s.shrink ? 4 / s.shrink : 0, s.samples); };
-      return rank(a->state()) < rank(b->state());
-    });
-    const size_t v = size_t(behind - renders.begin());
-    const RenderState& state = renders[v]->state();
-    idle = state.samples >= 16 && ((state.error > 0 && state.error <= version.goal) || state.samples >= kMostSamples);
-    if (idle) {
-      publish_cost("done", version, live, redone, renders);
+    const auto view = views.next(version.goal);
+    if (!view) {
+      publish_cost("done", version);
+      std::unique_lock lock(mutex_);
+      if (revision_ == version.revision && !stop_) wake_.wait_for(lock, kIdle);
       continue;
     }
-    if (v != on_device) {
-      live.apply(version.views[v].scene);
-      renders[v]->resume(live.world(), live.scene().integrator, *live.devices()[0].scene);
-      on_device = v;
-    }
-    const auto newer = [&] {
-      const std::lock_guard lock(mutex_);
-      return stop_ || revision_ != version.revision;
-    };
     bool due = false;
-    while (!due && !newer() && !stop_asked()) due = renders[v]->step();
+    while (!due && !newer_than(version) && !stop_asked()) due = views.step(*view);
     if (!due) continue;
-    publish_picture(v, version.revision, version.views[v].scene, *renders[v]);
-    publish_cost("rendering", version, live, redone, renders);
+    publish_picture(*view, version, views.render(*view));
+    publish_cost("rendering", version);
+    if (const uint64_t now = views.progress(version.goal).not_finite_since_start; now > told) {
+      if (told == 0 || now >= 2 * told) {  // a line each time that it has doubled
+        fmt::print(stderr, "wale: render: {} samples so far were not finite; the pictures are without them\n", now);
+        told = now;
+      }
+    }
   }
   stop();
+  if (const uint64_t count = views.progress(version.goal).not_finite_since_start)
+    bug("render: {} samples were not finite; the pictures were shown without them", count);
 }
 
 void EditorSession::stop() {

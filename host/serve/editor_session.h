@@ -7,10 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "host/live_scene.h"
-#include "host/serve/controls.h"
+#include "host/serve/editor_messages.h"
 #include "host/serve/editor_request.h"
-#include "host/serve/progressive_render.h"
 #include "host/serve/viewer_feed.h"
 
 namespace wale {
@@ -31,7 +29,8 @@ class EditorSession {
   /// Answers what is not the page itself.
   HttpReply handle(const EditorRequest& request);
 
-  /// Renders until somebody asks for a stop or `stop_asked` says so. Throws device errors.
+  /// Renders until somebody asks for a stop or `stop_asked` says so. Throws device errors, and at the end a fault where
+  /// samples were not finite.
   void run(std::span<const Device> device, const Loaders& loaders, const std::function<bool()>& stop_asked);
   /// Ends run() and all streams. From any thread.
   void stop();
@@ -39,22 +38,13 @@ class EditorSession {
   bool stopped() const;
 
  private:
-  /// One picture on the page.
-  struct View {
-    std::string name;
-    std::vector<std::string> more;  ///< overrides beside the edits
-    Scene scene;
-  };
   /// A version as run() renders it.
   struct Version {
     uint64_t revision = 0, scene = 0;
     std::vector<std::string> edits;
-    std::vector<View> views;
-    std::string control;  ///< that asked for it last
+    std::vector<Scene> scenes;  ///< one a view
+    std::string control;        ///< that asked for it last
     double goal = 0;
-  };
-  struct Refused {
-    std::string control, line;
   };
 
   HttpReply changed(const std::function<void()>& change, const std::string& control);
@@ -63,13 +53,12 @@ class EditorSession {
   CameraScene camera() const;
   HttpReply save(const EditorRequest& request);
   HttpReply picture(int view);
-  std::vector<View> views_of() const;
   Version newest();
-  std::string state_json();
+  bool newer_than(const Version& version) const;
+  std::string state_json() const;
   void publish_state(bool now);
-  void publish_cost(const std::string& status, const Version& version, const LiveScene& live, const Redone& redone,
-                    const std::vector<std::unique_ptr<ProgressiveRender>>& renders);
-  void publish_picture(size_t view, uint64_t revision, const Scene& scene, ProgressiveRender& render);
+  void publish_picture(size_t view, const Version& version, ProgressiveRender& render);
+  void confirm(const Version& version);
   void refuse(const Version& version, const std::string& line);
 
   EditorOptions options_;
@@ -80,9 +69,9 @@ class EditorSession {
   EditedScene edited_;
   EditorSettings settings_;
   uint64_t revision_ = 1;
-  std::string control_;           ///< that asked last
-  std::optional<Refused> fault_;  ///< of the last version that could not be made
-  CameraScene framed_;            ///< where the scene has no camera: how it was framed
+  std::string control_;               ///< that asked last
+  std::optional<RefusedEdit> fault_;  ///< of the last version that could not be made
+  CameraScene framed_;                ///< where the scene has no camera: how it was framed
   bool stop_ = false, dirty_ = true;
   std::chrono::steady_clock::time_point last_state_{};
   struct Shown {

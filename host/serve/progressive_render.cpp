@@ -1,6 +1,7 @@
 #include "host/serve/progressive_render.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -14,7 +15,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kWaveSeconds = 0.05;  // an edit waits for one wave at most
+constexpr double kWaveSeconds = 0.05;     // an edit waits for one wave at most
+constexpr double kPreviewSeconds = 0.06;  // the first picture takes that, where its pixels can be so few
 constexpr uint32_t kLeastPaths = 4096;
 
 WCamera shrunk(WCamera camera, int shrink) {
@@ -39,7 +41,7 @@ RenderOptions ProgressiveRender::options(const std::filesystem::path& kernel_dir
 }
 
 ProgressiveRender::ProgressiveRender(const Device& device, std::filesystem::path kernel_dir)
-    : device_(device), options_(options(kernel_dir)), levels_{Level{4, {}}, Level{2, {}}, Level{1, {}}} {}
+    : device_(device), options_(options(kernel_dir)), levels_{Level{8, {}}, Level{4, {}}, Level{2, {}}, Level{1, {}}} {}
 
 void ProgressiveRender::bind(const World& world, const IntegratorScene& integrator, const SceneDevice& scene,
                              bool again) {
@@ -67,9 +69,19 @@ void ProgressiveRender::bind(const World& world, const IntegratorScene& integrat
   }
 }
 
+// The finest that is there in time, as the version before was traced.
+size_t ProgressiveRender::first_level() const {
+  size_t level = 0;
+  if (seconds_per_path_ <= 0) return level;
+  while (level + 2 < levels_.size() && levels_[level + 1].tiles * kTilePixels * seconds_per_path_ <= kPreviewSeconds)
+    ++level;
+  return level;
+}
+
 void ProgressiveRender::restart(const World& world, const IntegratorScene& integrator, const SceneDevice& scene) {
   bind(world, integrator, scene, false);
-  level_ = sample_ = tile_ = 0;
+  level_ = first_level();
+  sample_ = tile_ = 0;
   last_picture_ = 0;
   rays_ = 0;
   state_ = {};
@@ -104,9 +116,10 @@ bool ProgressiveRender::step() {
     return true;
   }
   state_.samples = ++sample_;
-  // Often at first, when a pass changes much, then so that showing costs little beside tracing.
+  // Often at first, when a pass changes much, then so that showing costs little beside tracing; and at counts that
+  // pictures of every version have, to compare them.
   const double due = std::min(1.0, 0.1 + 0.1 * state_.seconds);
-  if (sample_ > 1 && state_.seconds - last_picture_ < due) return false;
+  if (!std::has_single_bit(sample_) && state_.seconds - last_picture_ < due) return false;
   last_picture_ = state_.seconds;
   return true;
 }
@@ -153,13 +166,6 @@ std::optional<double> ProgressiveRender::seconds_to(double goal) const {
 uint64_t ProgressiveRender::bytes() const {
   uint64_t sum = 0;
   for (const Level& level : levels_) sum += level.wave ? level.wave->bytes() : 0;
-  return sum;
-}
-
-uint64_t ProgressiveRender::not_finite() const {
-  uint64_t sum = 0;
-  for (const Level& level : levels_)
-    if (level.wave) sum = std::max<uint64_t>(sum, level.wave->counts().events[W_EVENT_NAN]);
   return sum;
 }
 

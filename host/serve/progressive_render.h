@@ -10,17 +10,17 @@ namespace wale {
 
 /// How far a picture is.
 struct RenderState {
-  int shrink = 0;        ///< of the picture that can be shown: 4, 2 or 1 pixels on a side; 0 = none yet
+  int shrink = 0;        ///< of the picture that can be shown: 8, 4, 2 or 1 pixels on a side; 0 = none yet
   uint32_t samples = 0;  ///< whole passes over the full picture
   double error = 0;      ///< 95th percentile of its tiles' errors (host/tile_error.h); 0 = not known yet
   double seconds = 0;    ///< of tracing since the restart
   double mrays = 0;      ///< 1e6 rays a second, since the restart
 };
 
-/// A picture that can be had soon and gets better: a sixteenth of the pixels, a quarter, then pass after pass over all
-/// of them, in waves short enough that an edit need not wait. Kernels, buffers and films stay from version to version
-/// of the scene; programs are built with all that edits may bring in, but for the choices that are one or the other
-/// (docs/features.md).
+/// A picture that can be had soon and gets better: as many of its pixels, down to a 64th, as can be traced at once,
+/// then four times as many, until all of them are there and pass follows pass, in waves short enough that an edit need
+/// not wait. Kernels, buffers and films stay from version to version of the scene; programs are built with all that
+/// edits may bring in, but for the choices that are one or the other (docs/features.md).
 class ProgressiveRender {
  public:
   ProgressiveRender(const Device& device, std::filesystem::path kernel_dir);
@@ -38,8 +38,6 @@ class ProgressiveRender {
   /// Seconds until the tiles' error is `goal`, as far as the last picture tells; nothing where it does not.
   std::optional<double> seconds_to(double goal) const;
   uint64_t bytes() const;
-  /// Rare events since it was made: samples that were not finite.
-  uint64_t not_finite() const;
 
   static RenderOptions options(const std::filesystem::path& kernel_dir);
 
@@ -49,17 +47,18 @@ class ProgressiveRender {
     std::unique_ptr<Wavefront> wave;
     uint32_t tiles = 0;
   };
+  size_t first_level() const;
   void bind(const World& world, const IntegratorScene& integrator, const SceneDevice& scene, bool again);
 
   const Device& device_;
   RenderOptions options_;
   WFrame frame_{};
   int width_ = 0, height_ = 0;
-  std::array<Level, 3> levels_;
+  std::array<Level, 4> levels_;
   size_t level_ = 0;
   uint32_t sample_ = 0, tile_ = 0;  ///< what is traced next on the level
   double seconds_per_path_ = 0;
-  uint64_t rays_ = 0, lost_ = 0;
+  uint64_t rays_ = 0;
   double last_picture_ = 0;
   RenderState state_;
 };

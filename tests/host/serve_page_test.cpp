@@ -11,6 +11,8 @@ namespace wale {
 namespace {
 
 TEST(ServePage, EveryControlChangesThePictureAsItSays) {
+  const char* all = std::getenv("WALE_LONG_TESTS");
+  if (!all || std::string(all) != "1") GTEST_SKIP() << "long: ./wale test --long";
   if (!has_http_library()) GTEST_SKIP() << "built without cpp-httplib";
   const std::filesystem::path source = WALE_SOURCE_DIR;
   TemporaryFolder folder;
