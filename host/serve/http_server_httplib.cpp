@@ -4,6 +4,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cstring>
 
 #include "host/serve/http_server.h"
@@ -19,12 +21,19 @@ class GuardedStream : public httplib::Stream {
  public:
   GuardedStream(socket_t socket, const HttpLimits& limits) : socket_(socket), limits_(limits) {}
 
-  /// Reads the next head; false when the client closed, was idle or too slow.
-  bool read_head(double idle_seconds) {
+  /// Waits for the next request; false when none comes, or the server ends first.
+  bool wait_for_request(double idle_seconds, const std::atomic<bool>& ended) {
+    constexpr double kLook = 0.1;
+    for (double left = idle_seconds; pending_.empty() && !ready(POLLIN, std::min(left, kLook)); left -= kLook)
+      if (ended || left <= kLook) return false;
+    return !ended;
+  }
+
+  /// Reads the next head; false when the client closed, sent nothing yet or is too slow.
+  bool read_head() {
     head_.clear();
     at_ = 0;
     body_left_ = 0;
-    if (pending_.empty() && !ready(POLLIN, idle_seconds)) return false;
     deadline_ =
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits_.read_seconds));
     while (true) {
@@ -176,9 +185,9 @@ class Listener : public httplib::Server {
     const bool room = open_.fetch_add(1) < limits_.connections;
     GuardedStream stream(socket, limits_);
     if (room)
-      while (!ended_ && stream.read_head(limits_.idle_seconds) && serve(stream)) {
+      while (stream.wait_for_request(limits_.idle_seconds, ended_) && stream.read_head() && serve(stream)) {
       }
-    else if (stream.read_head(0.1))
+    else if (stream.wait_for_request(0.1, ended_) && stream.read_head())
       answer(stream, {503, "application/json", "{\"error\": \"too many connections\"}\n"});
     --open_;
     ::shutdown(socket, SHUT_WR);

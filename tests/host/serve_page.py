@@ -89,7 +89,7 @@ class Page:
 
 # Keeps the first picture of every version that has so many samples, as luminance and means of the colours. Versions are
 # compared at this count and with the same seed; those that differ only in how they are shown have more, as they go on.
-SAMPLES = 32
+SAMPLES = 16
 WATCH = """(() => {
   window.kept = new Map();
   const show = showPicture;
@@ -161,8 +161,9 @@ def main():
     if not chromium:
         print("Chromium is not installed (apt-get install chromium)")
         return 77
-    server = subprocess.Popen([wale, "serve", scene, "--port", "0", "--quiet", "--size", "128x128" if not shots else "320x320"],
+    server = subprocess.Popen([wale, "serve", scene, "--port", "0", "--quiet", "--size", "96x96" if not shots else "320x320"],
                               stdout=subprocess.PIPE, text=True)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # by way of `finally`
     folder, page, failed = tempfile.mkdtemp(prefix="wale_page_"), None, []
 
     def expect(holds, what):
@@ -230,9 +231,14 @@ def main():
         set_any("integrator.seed=1")
         other = shown()[0]
         undo()
+        first = shown()[0]
+        set_any("camera.fov=21")
+        undo()
         base = shown()[0]
-        noise = base.difference(other)
-        expect(base.light > 10 and 0 < noise < 5, f"a picture is shown: mean {base.mean}, noise {noise:.2f}")
+        # With one seed and equal counts most of the noise is the same in both; what is left is that of a version again.
+        noise = max(base.difference(first), 0.125)
+        expect(base.light > 10, f"a picture is shown: mean {base.mean}")
+        expect(noise < 0.2 < base.difference(other), f"noise {base.difference(first):.3f}, of another seed {base.difference(other):.2f}")
         differs = lambda a, b: a.difference(b) > 2 * noise
 
         def changed(control, value, says, text):
@@ -298,7 +304,7 @@ def main():
         expect(len(both) == 2 and differs(*both), "front and back light side by side")
         turn("view.lit", "scene")
         back = shown()[0]
-        expect(base.difference(back) < 0.1 * noise, f"undone, it is as it was: {base.difference(back):.3f}")
+        expect(base.difference(back) <= noise, f"undone, it is as it was: {base.difference(back):.3f}")
 
         # mouse, keyboard, wheel
         box = page.run("(() => { const r = document.getElementById('stage').getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()")
