@@ -93,6 +93,12 @@ int run_knit(const KnitArgs& args) {
   // Everything that can be refused is refused before the long work starts.
   if (args.output.extension() != ".json")
     user_error("{}: a tile is written as .json; give such a name", args.output.string());
+  // Charts are .json too, and the tile would take the place of the one it is made of.
+  std::error_code missing;
+  if (std::filesystem::equivalent(args.chart, args.output, missing))
+    user_error("{}: is the chart itself; give the tile another name", args.output.string());
+  if (args.json.lexically_normal() == args.output.lexically_normal())
+    user_error("{}: is the tile; give the report another name", args.json.string());
   require_writable_path(args.output);
   if (!args.json.empty() && args.json != "-") require_writable_path(args.json);
   KnitSettings settings = args.settings;

@@ -76,8 +76,13 @@ StitchChart parse_chart_json(std::string_view text, const std::filesystem::path&
   if (!closed) chart.yarns.push_back({});
   const std::vector<JsonValue> rows = root["rows"].items();
   if (rows.size() > size_t(kMostStitches)) root["rows"].complain(fmt::format("more than {} rows", kMostStitches));
-  for (size_t r = rows.size(); r-- > 0;)
+  size_t stitches = 0;
+  for (size_t r = rows.size(); r-- > 0;) {
     chart.rows.push_back(row_of(rows[r], fmt::format("{}: rows[{}]", file, r), chart.yarns, closed));
+    stitches += size_t(chart.rows.back().makes());
+    if (stitches > size_t(kMostStitches))
+      rows[r].complain(fmt::format("a tile has at most {} stitches", kMostStitches));
+  }
   return chart;
 }
 

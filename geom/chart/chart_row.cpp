@@ -100,8 +100,8 @@ class Reader {
   void add(ChartCell cell, int column) {
     cell.column = column;
     row_.cells.push_back(cell);
-    if (row_.cells.size() > size_t(kMostStitches))
-      user_error("{}:{}: a row of more than {} stitches", where_, column, kMostStitches);
+    loops_ += cell.makes();
+    if (loops_ > kMostStitches) user_error("{}:{}: a row of more than {} stitches", where_, column, kMostStitches);
   }
 
   // The count behind a symbol at text[i - 1]; 1 without one. Moves i past it.
@@ -176,6 +176,7 @@ class Reader {
   std::vector<ChartYarn>& yarns_;
   bool closed_;
   bool single_ = false;
+  int loops_ = 0;
   ChartRow row_;
 };
 

@@ -100,11 +100,12 @@ unsigned threads_of(const KnitSettings& settings) {
   return settings.threads ? settings.threads : std::max(1u, std::thread::hardware_concurrency());
 }
 
-void add_strains(KnittedTile& tile, const KnitSettings& settings, const std::function<bool(double)>& progress) {
+void add_strains(KnittedTile& tile, const KnitSettings& settings, std::chrono::steady_clock::time_point until,
+                 const std::function<bool(double)>& progress) {
   const std::vector<double> strains(std::begin(kStrains), std::end(kStrains));
   RelaxSettings relaxing;
   relaxing.max_steps = settings.max_steps;
-  relaxing.max_seconds = settings.max_seconds;
+  relaxing.until = until;
   RelaxedStrains found = relax_strains(tile.yarns, relaxing, strains, strains, threads_of(settings), progress);
   tile.stopped = found.stopped;
   if (tile.stopped) return;
@@ -231,13 +232,16 @@ KnittedTile knit_tile(const StitchChart& chart, const KnitSettings& settings,
                       const std::function<bool(double)>& progress) {
   constexpr double kTileShare = 0.3;  // of the work, where strains follow
   check(settings);
+  RelaxSettings all;
+  all.max_seconds = settings.max_seconds;
+  const auto until = end_of(all);
   const Knit knit = knit_chart(chart);
   const auto first = [&](double share) { return !progress || progress(settings.strains ? kTileShare * share : share); };
   const double diameters = settings.loop_length > 0 ? settings.loop_length / settings.yarn_thickness : kPlainLoop;
   KnittedTile tile = settings.wales || settings.courses ? knit_to_gauge(chart, knit, settings, first)
                                                         : knit_once(chart, knit, settings, diameters, first);
   if (settings.strains && tile.relaxed.converged && tile.gauge_reached && !tile.stopped)
-    add_strains(tile, settings,
+    add_strains(tile, settings, until,
                 [&](double share) { return !progress || progress(kTileShare + (1 - kTileShare) * share); });
   return tile;
 }

@@ -79,8 +79,11 @@ int ChartRow::makes() const { return sum(cells, &ChartCell::makes); }
 int StitchChart::wales() const { return rows.empty() ? 0 : rows.front().makes(); }
 
 StitchChart parse_chart_text(std::string_view text, const std::filesystem::path& file) {
+  // Editors of Windows begin a text with this mark of UTF-8.
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   StitchChart chart;
   int line = 0;
+  size_t stitches = 0;
   bool named = false;  // yarns
   while (!text.empty()) {
     const std::string where = fmt::format("{}:{}", file.string(), ++line);
@@ -101,7 +104,10 @@ StitchChart parse_chart_text(std::string_view text, const std::filesystem::path&
     if (trimmed(row).empty()) continue;
     if (chart.yarns.empty()) chart.yarns.push_back({});
     chart.rows.push_back(parse_chart_row(row, where, 1, chart.yarns, named));
+    stitches += size_t(chart.rows.back().makes());
     if (chart.rows.size() > size_t(kMostStitches)) user_error("{}:1: more than {} rows", where, kMostStitches);
+    // Here and not when all is read, as all of it might not fit into memory.
+    if (stitches > size_t(kMostStitches)) user_error("{}:1: a tile has at most {} stitches", where, kMostStitches);
   }
   std::reverse(chart.rows.begin(), chart.rows.end());
   return chart;
@@ -131,6 +137,8 @@ void check_chart(const StitchChart& chart, const std::filesystem::path& file) {
       if (cell.takes() > left)
         user_error("{}:{}: {} takes {} loops, but of the {} of the row below ({}) {} are left", row.where, cell.column,
                    name_of(cell), cell.takes(), there, below.where, left);
+      if (cell.takes() > kWidestCable)
+        user_error("{}:{}: a cable over {} loops; valid: up to {}", row.where, cell.column, cell.takes(), kWidestCable);
       left -= cell.takes();
     }
     if (left > 0)

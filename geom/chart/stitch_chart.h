@@ -65,6 +65,10 @@ struct StitchChart {
 /// Stitches of a tile, at most; larger ones could not be relaxed in a day.
 constexpr int kMostStitches = 16384;
 
+/// Loops of a cable, at most. All of them touch each other where they cross, so that time grows with the sixth power of
+/// its width: 16 over 16 are wider than any that is knitted.
+constexpr int kWidestCable = 32;
+
 /// Reads a chart by its suffix (docs/patterns.md): .json, .knitout (or .k), and text for anything else. Throws user
 /// errors with row and column: unknown symbols, rows that end with different numbers of loops, a decrease with nothing
 /// to take, a cable wider than the row, stitches without yarn.

@@ -106,9 +106,11 @@ double Descent::strain() const {
 
 // H + damping is made positive by the damping alone: where H has negative directions, as it does on the way to a
 // buckled state, a small one gives long steps just along these.
-bool Descent::step() {
+bool Descent::step(const std::function<bool()>& over) {
   for (int attempt = 0; attempt < 24; ++attempt) {
-    const auto found = system_.solve(damping_, free_ && settings_.free_period_x, free_ && settings_.free_period_y);
+    const auto found =
+        system_.solve(damping_, free_ && settings_.free_period_x, free_ && settings_.free_period_y, over);
+    if (over && over()) return false;
     if (!found) {
       damping_ = std::max(4 * damping_, kLeastShift);
       continue;

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -25,8 +26,8 @@ class Descent {
   double closest_samples() const;
   double strain() const;  ///< largest of a segment
   double energy() const { return energy_; }
-  /// One step down; false where no step leads further down. look() comes next.
-  bool step();
+  /// One step down; false where no step leads further down, or where `over` ended it. look() comes next.
+  bool step(const std::function<bool()>& over = {});
 
  private:
   void sum();

@@ -13,6 +13,8 @@ using Map = Eigen::Map<Matrix>;
 using ConstMap = Eigen::Map<const Matrix>;
 
 constexpr uint32_t kNone = ~0u;
+// Rows of a dense matrix: from kAsked on it is worth asking whether to go on, up to kWhole it takes a second or two.
+constexpr long kAsked = 600, kWhole = 3000, kPanel = 256;
 
 // Fill-reducing order of the columns: [column] -> place.
 std::vector<uint32_t> minimum_degree(const BlockMatrix& matrix) {
@@ -126,11 +128,12 @@ void FrontFactors::analyse(const BlockMatrix& matrix) {
   for (size_t c = 0; c < n; ++c) entry_start_[c + 1] += entry_start_[c];
 }
 
-bool FrontFactors::factorise(const BlockMatrix& matrix, double shift) {
+bool FrontFactors::factorise(const BlockMatrix& matrix, double shift, const std::function<bool()>& over) {
   std::vector<uint32_t> local(place_.size(), kNone);  // row -> row of the front
   Matrix dense;
   for (Front& front : fronts_) {
     const long rows = long(3 * front.rows.size()), own = long(3 * front.count);
+    if (over && rows >= kAsked && over()) return false;
     for (uint32_t k = 0; k < front.rows.size(); ++k) local[front.rows[k]] = k;
     dense.setZero(rows, rows);
     for (uint32_t k = entry_start_[front.first]; k < entry_start_[front.first + front.count]; ++k) {
@@ -152,17 +155,23 @@ bool FrontFactors::factorise(const BlockMatrix& matrix, double shift) {
               rest.block<3, 3>(3 * long(r), 3 * long(c));
       }
     }
-    Eigen::Ref<Matrix> top = dense.topLeftCorner(own, own);
-    const Eigen::LLT<Eigen::Ref<Matrix>> factored(top);
-    if (factored.info() != Eigen::Success) return false;
-    if (rows > own) {
-      auto below = dense.bottomLeftCorner(rows - own, own);
+    // A large front goes by panels, so that `over` is asked every few seconds.
+    const long width = own > kWhole ? kPanel : own;
+    for (long from = 0; from < own; from += width) {
+      if (from > 0 && over && over()) return false;
+      const long panel = std::min(width, own - from), left = rows - from - panel;
+      Eigen::Ref<Matrix> top = dense.block(from, from, panel, panel);
+      const Eigen::LLT<Eigen::Ref<Matrix>> factored(top);
+      if (factored.info() != Eigen::Success) return false;
+      if (left == 0) continue;
+      auto below = dense.block(from + panel, from, left, panel);
       top.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
+      dense.bottomRightCorner(left, left).selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
+    }
+    if (rows > own) {
       // Whole blocks on the diagonal: the upper corners of those are read above and thrown away.
       front.rest.resize(size_t((rows - own) * (rows - own)));
-      Map rest(front.rest.data(), rows - own, rows - own);
-      rest = dense.bottomRightCorner(rows - own, rows - own);
-      rest.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
+      Map(front.rest.data(), rows - own, rows - own) = dense.bottomRightCorner(rows - own, rows - own);
     }
     front.factor.resize(size_t(rows * own));
     Map(front.factor.data(), rows, own) = dense.leftCols(own);

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -22,8 +23,9 @@ class FrontFactors {
  public:
   /// Where entries are; values do not matter. Once for all matrices of the same structure.
   void analyse(const BlockMatrix& matrix);
-  /// Factors of the matrix with `shift` added to its diagonal; false where that is not positive definite.
-  bool factorise(const BlockMatrix& matrix, double shift);
+  /// Factors of the matrix with `shift` added to its diagonal; false where that is not positive definite, or where
+  /// `over` ended it: one matrix of a wide cable takes minutes.
+  bool factorise(const BlockMatrix& matrix, double shift, const std::function<bool()>& over = {});
   /// Solves for right sides, one after another in `right`, in place, after factorise() was true.
   void solve(std::span<double> right) const;
 

@@ -78,8 +78,9 @@ void NewtonSystem::add(const LocalTerm& term) {
   for (int k = 0; k < 3; ++k) strain_hessian_[k] += term.strain_hessian[k];
 }
 
-std::optional<TileStep> NewtonSystem::solve(double damping, bool free_x, bool free_y) {
-  if (!factors_.factorise(hessian_, damping)) return std::nullopt;
+std::optional<TileStep> NewtonSystem::solve(double damping, bool free_x, bool free_y,
+                                            const std::function<bool()>& over) {
+  if (!factors_.factorise(hessian_, damping, over)) return std::nullopt;
   // Bordered by the free strains e: H u + B e = -g, B^T u + C e = -s.
   std::vector<int> free;
   if (free_x) free.push_back(0);

@@ -27,8 +27,9 @@ class NewtonSystem {
   void add_strain(const dvec2& gradient) { strain_gradient_ += gradient; }  ///< linear in the strains
   const std::vector<dvec3>& gradient() const { return gradient_; }
   dvec2 strain_gradient() const { return strain_gradient_; }
-  /// -(H + damping)^-1 gradient, with the strains that are not free at 0; nothing where H + damping is not positive.
-  std::optional<TileStep> solve(double damping, bool free_x, bool free_y);
+  /// -(H + damping)^-1 gradient, with the strains that are not free at 0; nothing where H + damping is not positive, or
+  /// where `over` ended it.
+  std::optional<TileStep> solve(double damping, bool free_x, bool free_y, const std::function<bool()>& over = {});
   /// Change of the second-order model without damping on a step.
   double model(const TileStep& step) const;
 

@@ -60,6 +60,7 @@ RelaxedStrains relax_strains(const PeriodicYarns& relaxed, const RelaxSettings& 
   std::vector<PeriodicYarns> shapes(out.reached.size());
   RelaxSettings held = settings;
   held.free_period_x = held.free_period_y = held.coarse_first = false;
+  held.until = end_of(settings);
   held.closest = kCrushed;
   held.contact_stiffness = kCrushStiffness;
   const auto node = [&](size_t ic, size_t iw) { return iw * columns + ic; };

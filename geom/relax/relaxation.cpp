@@ -61,7 +61,14 @@ class Swelling {
   }
 
  private:
-  bool over() const { return stopped_ || out_.steps >= settings_.max_steps || Clock::now() > end_; }
+  bool over() {
+    if (Clock::now() > end_) out_.out_of_time = true;
+    return stopped_ || out_.out_of_time || out_.steps >= settings_.max_steps;
+  }
+
+  void tell(double share) {
+    if (!stopped_ && progress_ && !progress_(share, out_.force)) stopped_ = true;
+  }
 
   void settle(double tolerance, int most, bool free_period, double share) {
     work_.free_period(free_period);
@@ -69,8 +76,9 @@ class Swelling {
       work_.look();
       out_.force = work_.force(), out_.period_force = work_.period_force();
       if (out_.force < tolerance && out_.period_force < tolerance) return;
-      if (progress_ && !progress_(share, out_.force)) stopped_ = true;
-      if (stopped_ || !work_.step()) return;
+      tell(share);
+      // One step of a large tile may take minutes.
+      if (stopped_ || !work_.step([&] { return tell(share), over(); })) return;
       ++out_.steps;
     }
   }
@@ -86,12 +94,16 @@ class Swelling {
 
 }  // namespace
 
+Clock::time_point end_of(const RelaxSettings& settings) {
+  const auto left = std::chrono::duration<double>(std::min(settings.max_seconds, 1e6));
+  return std::min(settings.until, Clock::now() + std::chrono::duration_cast<Clock::duration>(left));
+}
+
 Relaxed relax(PeriodicYarns& yarns, const RelaxSettings& settings,
               const std::function<bool(double, double)>& progress) {
   constexpr double kCoarseTolerance = 0.03, kCoarseClosest = 0.9;
   const double diameter = 2 * yarns.radius;
-  const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                      std::chrono::duration<double>(std::min(settings.max_seconds, 1e6)));
+  const auto end = end_of(settings);
   PeriodicYarns scaled = yarns;
   for (dvec3& p : scaled.points) p /= diameter;
   for (PeriodicYarn& y : scaled.yarns) y.length /= diameter;

@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <functional>
 #include <string>
 
@@ -20,11 +21,16 @@ struct RelaxSettings {
   bool coarse_first = true;       ///< with every second point first, where that is safe
   int max_steps = 3000;
   double max_seconds = 600;
+  std::chrono::steady_clock::time_point until = std::chrono::steady_clock::time_point::max();  ///< ends it too
 };
+
+/// When a relaxation that begins now ends.
+std::chrono::steady_clock::time_point end_of(const RelaxSettings& settings);
 
 /// What was reached.
 struct Relaxed {
   bool converged = false;
+  bool out_of_time = false;  ///< max_seconds or `until` ended it
   int steps = 0;
   double force = 0;            ///< largest left on a point, B / D^2
   double period_force = 0;     ///< and on the period

@@ -57,6 +57,9 @@ Relaxed relax_from_starts(PeriodicYarns& yarns, const RelaxSettings& settings, i
     PeriodicYarns yarns;
     Relaxed reached;
   };
+  // One end for all: the last starts begin when the first ones are done.
+  RelaxSettings timed = settings;
+  timed.until = end_of(settings);
   std::vector<Try> tries(size_t(std::max(starts, 1)), {yarns, {}});
   std::vector<size_t> open;
   for (size_t i = tries.size(); i-- > 0;) open.push_back(i);
@@ -64,7 +67,7 @@ Relaxed relax_from_starts(PeriodicYarns& yarns, const RelaxSettings& settings, i
   bool go_on = true;
   run_tasks(threads, open, [&](size_t i, const auto&) {
     if (i > 0) shake(tries[i].yarns, kShaken, settings.neighbours, i);
-    tries[i].reached = relax(tries[i].yarns, settings, [&](double share, double force) {
+    tries[i].reached = relax(tries[i].yarns, timed, [&](double share, double force) {
       const std::lock_guard lock(telling);
       return go_on = go_on && (!progress || progress(int(i), share, force));
     });
@@ -73,6 +76,10 @@ Relaxed relax_from_starts(PeriodicYarns& yarns, const RelaxSettings& settings, i
     return a.reached.converged != b.reached.converged ? a.reached.converged : a.reached.energy < b.reached.energy;
   };
   Try& best = *std::min_element(tries.begin(), tries.end(), better);
+  // Which starts came to their end in time hangs on the machine, and so would the lowest of them.
+  for (const Try& one : tries)
+    if (one.reached.out_of_time && !one.reached.converged)
+      best.reached.converged = false, best.reached.out_of_time = true;
   yarns = std::move(best.yarns);
   return best.reached;
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <chrono>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <random>
@@ -177,6 +178,33 @@ TEST(FrontFactors, SolveAsADenseSolverDoes) {
   }
 }
 
+// One matrix of a wide cable takes minutes: Ctrl-C and --seconds must not wait for it. By panels, too.
+TEST(FrontFactors, StopInAFrontAndGoByPanels) {
+  constexpr uint32_t kPoints = 1100;  // 3300 rows in one front
+  BlockMatrix m;
+  m.start = {0};
+  for (uint32_t c = 0; c < kPoints; ++c) {
+    for (uint32_t r = c; r < kPoints; ++r) {
+      m.row.push_back(r);
+      m.block.push_back(r == c ? dmat3(2.0) : dmat3(1.0 / (1 + r + c)));
+    }
+    m.start.push_back(uint32_t(m.row.size()));
+  }
+  FrontFactors factors;
+  factors.analyse(m);
+  int asked = 0;
+  EXPECT_FALSE(factors.factorise(m, 1, [&] { return ++asked == 3; }));
+  EXPECT_EQ(asked, 3);
+  ASSERT_TRUE(factors.factorise(m, 1));
+  std::vector<double> x(3 * kPoints, 1.0);
+  factors.solve(x);
+  for (const uint32_t i : {0u, 1u, 500u, kPoints - 1}) {
+    double sum = 0;
+    for (uint32_t k = 0; k < kPoints; ++k) sum += (k == i ? 3.0 : 1.0 / (1 + k + i)) * x[3 * k];
+    EXPECT_NEAR(sum, 1, 1e-12) << i;
+  }
+}
+
 TEST(FrontFactors, RefuseWhatIsNotPositiveDefinite) {
   Eigen::MatrixXd dense;
   const BlockMatrix m = random_matrix(40, 2, dense);
@@ -198,6 +226,18 @@ TEST(RelaxStarts, LowestOfSeveralIsKeptWhateverTheThreads) {
   EXPECT_LT(best.energy, first.energy) << "this tile has several states of rest";
   PeriodicYarns by_hand = start;
   EXPECT_EQ(relax(by_hand, {}).energy, first.energy) << "the first start is where the yarns are";
+}
+
+// All starts share the time, and what depends on how many of them came to their end is no result.
+TEST(RelaxStarts, TimeIsThatOfAllStartsTogether) {
+  PeriodicYarns y = tile_of("k2p2\nk2p2\np2k2\np2k2", false);
+  RelaxSettings settings;
+  settings.max_seconds = 0.3;
+  const auto start = std::chrono::steady_clock::now();
+  const Relaxed reached = relax_from_starts(y, settings, 64, 1);
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 5) << "64 x 0.3 s is 19 s";
+  EXPECT_TRUE(reached.out_of_time);
+  EXPECT_FALSE(reached.converged);
 }
 
 TEST(RelaxStarts, ShakingMovesEveryYarnAndLetsNonePassAnother) {

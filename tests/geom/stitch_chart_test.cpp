@@ -69,6 +69,19 @@ TEST(StitchChart, LinesReadBack) {
   EXPECT_EQ(chart_lines(text(again)), chart_lines(chart));
 }
 
+TEST(StitchChart, MarkOfUtf8IsNoStitch) { EXPECT_EQ(text("\xef\xbb\xbfkp\n").wales(), 2); }
+TEST(StitchChart, WideCablesTakeForEver) {
+  refused("c1000/1000f\n", {"c.chart:1:1", "a cable over 2000 loops; valid: up to 32"});
+  EXPECT_EQ(text("c32f\n").wales(), 32);
+}
+// What is refused in the end must not fill the memory first.
+TEST(StitchChart, TooLargeIsSaidWhereItIs) {
+  std::string wide, tall;
+  for (int i = 0; i < 9; ++i) wide += "c1000/1000f ";
+  for (int i = 0; i < 40; ++i) tall += "k1000\n";
+  refused(wide, {"c.chart:1:97", "a row of more than 16384 stitches"});
+  refused(tall, {"c.chart:17:1", "at most 16384 stitches"});
+}
 TEST(StitchChart, UnknownSymbol) { refused("kk\nk x k\n", {"c.chart:2:3", "\"x\" is no stitch", "k2tog"}); }
 TEST(StitchChart, Empty) {
   refused("", {"c.chart: no row of stitches"});
@@ -112,7 +125,7 @@ TEST(StitchChart, AbsurdSizes) {
   refused(wide, {"c.chart:1", "more than 16384 stitches"});
   std::string high;
   for (int i = 0; i < 200; ++i) high += "k100\n";
-  refused(high, {"100 x 200 stitches; a tile has at most 16384"});
+  refused(high, {"c.chart:164:1: a tile has at most 16384 stitches"});
 }
 TEST(StitchChart, OddCables) {
   for (const char* cable : {"c3f", "c0f", "c4", "c4x", "c/1f", "c1/0b", "cf"})

@@ -154,6 +154,13 @@ TEST_F(CliKnit, TileIsJson) {
   EXPECT_TRUE(contains(refused({"knit", chart("k\n"), "-o", at("none/tile.json")}, 1, {kNoDevice}), "does not exist"));
 }
 
+TEST_F(CliKnit, NeitherChartNorTileIsWrittenOver) {
+  const std::string text = R"({"wale_chart": 1, "rows": ["k"]})", file = chart(text, "c.json");
+  EXPECT_TRUE(contains(refused({"knit", file, "-o", at("./c.json")}, 1, {kNoDevice}), "is the chart itself"));
+  EXPECT_EQ(file_text(folder_ / "c.json"), text);
+  EXPECT_TRUE(contains(knit_refused(file, {"--json", at("./tile.json")}), "is the tile; give the report another name"));
+}
+
 // Held far too narrow, the yarns do not fit side by side.
 TEST_F(CliKnit, WhatCannotBeRelaxedIsNotWritten) {
   const std::string line = knit_refused(chart("k\n"), {"--period", "1.2x1", "--steps", "40", "--quiet"});
