@@ -32,10 +32,11 @@ void check_view(const JsonNode& node, const std::string& path) {
     fail(up_node, path + ".up", "parallel to the line from position to look_at; choose another direction");
 }
 
-// When a scene is looked at, and the folder that its files are relative to.
+// When a scene is looked at, the folder that its files are relative to, and which of them it may name.
 struct Moment {
   double frame;
   std::filesystem::path folder;
+  FileFence* fence;
 };
 
 Transform transform_of(const JsonNode& node) {
@@ -45,13 +46,15 @@ Transform transform_of(const JsonNode& node) {
 long whole_of(const JsonNode& node, std::string_view key) { return std::lround(number_of(node, key)); }
 
 // What the schema cannot say of files of frames: that they are there, and which.
-SequenceSource sequence_of(const JsonNode& node, const std::filesystem::path& folder) {
+SequenceSource sequence_of(const JsonNode& node, const Moment& moment) {
   SequenceSource out;
   if (node.has("cache")) {
     out.base = node["file"].text;
     out.cache = node["cache"].text;
   } else {
-    out.frames = std::filesystem::absolute(folder / node["frames"].text).lexically_normal();
+    out.frames = std::filesystem::absolute(moment.folder / node["frames"].text).lexically_normal();
+    if (moment.fence && !moment.fence->admits_all(out.frames))
+      fail(node["frames"], "frames", "{}", moment.fence->refusal(node["frames"].text));
   }
   out.first = whole_of(node, "first");
   out.step = whole_of(node, "step");
@@ -68,7 +71,7 @@ MeshSource mesh_of(const JsonNode& node, const Moment& moment) {
   if (node.kind == JsonNode::Kind::string) {
     mesh.file = node.text;
   } else if (node.has("frames") || node.has("cache")) {
-    mesh.sequence = sequence_of(node, moment.folder);
+    mesh.sequence = sequence_of(node, moment);
     mesh.frame = moment.frame;
   } else if (node.has("file")) {
     mesh.file = node["file"].text;
@@ -346,7 +349,7 @@ Scene scene_of(JsonNode root, const std::filesystem::path& file, const std::vect
   scene.film = film_of(root["film"]);
   scene.integrator = integrator_of(root["integrator"]);
   scene.animation = animation_of(root["animation"]);
-  const Moment moment{scene.animation.frame, context.folder};
+  const Moment moment{scene.animation.frame, context.folder, fence};
   for (const auto& member : root["materials"].members) scene.materials.push_back(material_of(member.key, member.value));
   for (const char* key : {"fabrics", "objects", "lights"}) check_names(root[key], key);
   for (size_t i = 0; i < root["fabrics"].items.size(); ++i)
