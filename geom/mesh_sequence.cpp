@@ -52,6 +52,8 @@ MeshSequence::Place MeshSequence::place(double frame) const {
   const auto number = [&](double whole) { return source_.first + std::lround(whole) * stride; };
   const double whole = std::floor(at);
   if (std::abs(at - std::round(at)) <= kWhole) return {number(std::round(at)), number(std::round(at)), 0};
+  // There is no way from one mesh to another one: the one before stays.
+  if (source_.changing) return {number(whole), number(whole), 0};
   Place p{number(whole), number(whole + 1), at - whole};
   // Behind the last frame the motion goes on: what moves is as blurred there as before.
   if (!there(p.after) && there(p.before) && there(number(whole - 1)) && !before(p.after, numbers_.back()))
@@ -149,7 +151,7 @@ std::vector<long>::const_iterator MeshSequence::held(long number) const {
 BaseMesh MeshSequence::at(double frame, std::vector<std::string>* notes) const {
   const Place p = place(frame);
   BaseMesh mesh = read_or_hold(p.before, notes);
-  if (p.share == 0 || source_.changing) return mesh;
+  if (p.share == 0) return mesh;
   const BaseMesh after = read_or_hold(p.after, notes);
   for (size_t i = 0; i < mesh.position.size(); ++i)
     mesh.position[i] += p.share * (after.position[i] - mesh.position[i]);

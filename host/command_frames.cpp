@@ -106,15 +106,25 @@ class Frames {
     for (const auto& output : frames_.front().files) require_writable(output);
   }
 
+  // When a frame is seen: at the middle of each of equal parts of the time that the shutter is open.
+  static std::vector<double> moments(const Scene& scene, int spp) {
+    const double shutter = scene.animation.shutter;
+    std::vector<double> at = {scene.animation.frame};
+    if (shutter > 0) at.resize(size_t(std::min(scene.animation.shutter_steps, spp)), at[0]);
+    for (size_t k = 0; k < at.size(); ++k) at[k] += shutter * (double(k) + 0.5) / double(at.size());
+    return at;
+  }
+
   void check(Frame& frame) {
     const Scene scene = scene_at(frame.at);
     const double shutter = scene.animation.shutter;
     if (shutter > 0 && (args_.error > 0 || args_.seconds > 0))
       user_error("--{}: a goal would not give every moment of a blurred frame its samples; valid: --spp",
                  args_.error > 0 ? "error" : "seconds");
-    most_samples(args_, scene.integrator);
+    const std::vector<double> seen = moments(scene, most_samples(args_, scene.integrator));
     const auto require = [&](const MeshSource& mesh) {
-      if (mesh.sequence) sequences_.open(*mesh.sequence)->require(mesh.frame);
+      if (mesh.sequence)
+        for (const double at : seen) sequences_.open(*mesh.sequence)->require(at);
     };
     for (const auto& fabric : scene.fabrics) require(fabric.mesh);
     for (const auto& object : scene.objects) require(object.mesh);
@@ -186,10 +196,7 @@ class Frames {
   bool render(Frame& frame, RenderOptions options, const std::function<void(double)>& show) {
     Scene scene = scene_at(frame.at);
     options.spp = most_samples(args_, scene.integrator);
-    const uint32_t moments = blurred_ ? uint32_t(std::min(scene.animation.shutter_steps, options.spp)) : 1;
-    const double shutter = scene.animation.shutter;
-    // The middle of each of equal parts of the time that the shutter is open.
-    const auto moment = [&](uint32_t k) { return frame.at + shutter * (k + 0.5) / moments; };
+    const std::vector<double> seen = moments(scene, options.spp);
     FrameStats::Row row{frame.at};
     const auto apply = [&](const Scene& version) {
       const auto start = Clock::now();
@@ -197,11 +204,11 @@ class Frames {
       row.add(redone, live_->devices().front().scene->fabric(), since(start));
       note(live_->world().notes);
     };
-    apply(blurred_ ? scene_at(moment(0)) : scene);
+    apply(blurred_ ? scene_at(seen[0]) : scene);
     if (stop_requested()) return false;
-    options.moments = moments;
+    options.moments = uint32_t(seen.size());
     options.at_moment = [&](uint32_t k) {
-      apply(scene_at(moment(k)));
+      apply(scene_at(seen[k]));
       return Moment{&live_->world(), live_->devices()};
     };
     const Rendered r = wale::render(live_->devices(), live_->world(), scene.integrator, options, [&](double f) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "geom/error.h"
+#include "geom/numbered_name.h"
 
 namespace wale {
 namespace fs = std::filesystem;
@@ -24,6 +25,17 @@ bool FileFence::admits(const fs::path& file) {
   if (!closed_) named_.insert(full);
   if (named_.contains(full)) return true;
   return std::mismatch(folder_.begin(), folder_.end(), full.begin(), full.end()).first == folder_.end();
+}
+
+bool FileFence::admits_all(const fs::path& pattern) {
+  if (!admits(pattern)) return false;  // before a folder is looked into
+  if (!NumberedName::is_one(pattern)) return true;
+  const NumberedName name(pattern);
+  std::error_code failed;
+  for (fs::directory_iterator at(name.folder(), failed), end; !failed && at != end; at.increment(failed))
+    if (std::error_code none; at->is_symlink(none) && name.number(at->path().filename().string()))
+      if (!admits(at->path())) return false;
+  return true;
 }
 
 std::string FileFence::refusal(const std::string& name) const {

@@ -17,6 +17,8 @@ class FileFence {
   void close() { closed_ = true; }
 
   bool admits(const std::filesystem::path& file);
+  /// The same of a name with its number, "cloth_####.obj": true where all such files are let in.
+  bool admits_all(const std::filesystem::path& pattern);
   /// Why a name is refused.
   std::string refusal(const std::string& name) const;
 

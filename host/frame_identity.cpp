@@ -26,7 +26,12 @@ uint64_t FrameIdentity::mesh(const MeshSource& mesh, double shutter) {
   const auto sequence = sequences_.open(*mesh.sequence);
   const uint64_t base = mesh.sequence->base.empty() ? 0 : file(mesh.sequence->base);
   uint64_t all = base ^ sequence->hash(mesh.frame);
-  if (shutter > 0) all = all * 31 + sequence->hash(mesh.frame + shutter);
+  if (shutter > 0) {
+    // Frames in the middle are seen too, and samples of a cache may lie closer to each other than frames.
+    for (double open = 1; open < shutter; ++open) all = all * 31 + sequence->hash(mesh.frame + open);
+    if (!mesh.sequence->cache.empty()) all = all * 31 + file(mesh.sequence->cache);
+    all = all * 31 + sequence->hash(mesh.frame + shutter);
+  }
   return all;
 }
 

@@ -41,7 +41,8 @@ class Job {
         progress_(progress),
         aovs_(options.aovs || options.also.aovs),
         frame_(frame_of(world, integrator)) {
-    pixels_ = uint32_t(padded_pixels(world.camera.width, world.camera.height));
+    width_ = world.camera.width, height_ = world.camera.height;
+    pixels_ = uint32_t(padded_pixels(width_, height_));
     waves_.resize(devices.size());
     result_.devices.resize(devices.size());
     seconds_per_path_.resize(devices.size());
@@ -157,6 +158,12 @@ class Job {
         for (const auto& wave : waves_) wave->leave_scene();
         const Moment moment = options_.at_moment(uint32_t(k));
         if (moment.devices.size() != waves_.size()) bug("render: a moment on other devices");
+        const WCamera& camera = moment.world->camera;
+        if (camera.width != width_ || camera.height != height_)
+          user_error(
+              "motion blur: film.size is {} x {} at one moment of a frame and {} x {} at another one; give its keys "
+              "\"hold\" on whole frames, or close the shutter",
+              width_, height_, camera.width, camera.height);
         frame_ = frame_of(*moment.world, integrator);
         for (size_t d = 0; d < waves_.size(); ++d) {
           const DriverCall guard;
@@ -247,6 +254,7 @@ class Job {
   const std::function<void(double)>& progress_;
   bool aovs_;
   WFrame frame_;
+  int width_ = 0, height_ = 0;
   uint32_t pixels_ = 0, block_pixels_ = kTilePixels;
   std::vector<double> seconds_per_path_;  ///< of each device's last wave
   std::optional<double> floor_;           ///< of errors, since the first checkpoint

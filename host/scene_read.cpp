@@ -53,7 +53,7 @@ SequenceSource sequence_of(const JsonNode& node, const Moment& moment) {
     out.cache = node["cache"].text;
   } else {
     out.frames = std::filesystem::absolute(moment.folder / node["frames"].text).lexically_normal();
-    if (moment.fence && !moment.fence->admits(out.frames))
+    if (moment.fence && !moment.fence->admits_all(out.frames))
       fail(node["frames"], "frames", "{}", moment.fence->refusal(node["frames"].text));
   }
   out.first = whole_of(node, "first");

@@ -65,6 +65,19 @@ TEST_F(Sequences, MotionGoesOnBehindTheLastFrame) {
   EXPECT_NEAR(open(numbered()).at(2.5).position[0].z, 4 + 0.5 * 3, 1e-12);
 }
 
+// Where there is no way from one mesh to the next, the one before stays: at the end and before a gap too.
+TEST_F(Sequences, OfChangingTopologyTheMeshBeforeStays) {
+  for (const int n : {0, 1, 3}) write(fmt::format("c_{:02}.obj", n).c_str(), lifted(n, 3 + n));
+  SequenceSource source = numbered();
+  source.changing = true;
+  const MeshSequence s = open(source);
+  EXPECT_EQ(s.at(0.75).position[0].z, 0);
+  EXPECT_EQ(s.at(1.25).position[0].z, 1);
+  EXPECT_EQ(s.at(3.25).position[0].z, 3);
+  EXPECT_NO_THROW(s.require(1.25));
+  EXPECT_NE(user_message([&] { s.require(2.25); }), "");
+}
+
 TEST_F(Sequences, GapsAreFoundAndNamed) {
   for (const int n : {0, 1, 3, 7, 8}) write(fmt::format("c_{:02}.obj", n).c_str(), lifted(n));
   EXPECT_EQ(refusal(numbered(), 2), "frame 2: c_02.obj is not there; there are 0 to 8 without 2, 4 to 6");

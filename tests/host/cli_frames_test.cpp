@@ -159,6 +159,30 @@ TEST_F(CliFrames, ThatAreWrongAreNamedBeforeAnythingIsMade) {
   EXPECT_TRUE(contains(held.err, "c_01.obj is held"));
 }
 
+// What an open shutter sees counts: the gap behind frame 1, and behind the end.
+TEST_F(CliFrames, ThatAShutterNeedsAreNamedBeforeAnythingIsMade) {
+  write_frames(4);
+  std::filesystem::remove(folder_ / "c_02.obj");
+  moving_scene("", R"({"shutter": 0.5})");
+  EXPECT_EQ(refused(frames("0..1")), "wale: frame 2: c_02.obj is not there; there are 0 to 3 without 2");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "f_00.exr"));
+}
+
+// A shutter that is open for several frames sees those in the middle.
+TEST_F(CliFrames, AreOtherOnesWhenAnythingThatTheShutterSawChanges) {
+  write_frames(5);
+  moving_scene("", R"({"shutter": 3, "shutter_steps": 3})");
+  ASSERT_EQ(run_wale(frames("1")).status, 0);
+  for (const int seen : {2, 3}) {
+    write_obj(waving(7), folder_ / fmt::format("c_{:02}.obj", seen));
+    EXPECT_TRUE(contains(refused(frames("1")), "not this frame of this scene")) << seen;
+    write_obj(waving(seen), folder_ / fmt::format("c_{:02}.obj", seen));
+  }
+  const Outcome kept = run_wale(frames("1"));
+  EXPECT_EQ(kept.status, 0) << kept.err;
+  EXPECT_TRUE(contains(kept.err, "finished")) << kept.err;
+}
+
 // Files are read when their frame comes; those before it stay.
 TEST_F(CliFrames, ThatAreDamagedEndTheRenderOrAreHeld) {
   write_frames(2);
@@ -196,6 +220,13 @@ TEST_F(CliFrames, AreSaidInOneWay) {
   moving_scene("", R"({"shutter": 0.5})");
   EXPECT_EQ(refused({"render", scene_, "-o", at("b.exr"), "--error", "0.1"}),
             "wale: --error: a goal would not give every moment of a blurred frame its samples; valid: --spp");
+}
+
+TEST_F(CliFrames, AreOfOneSizeWhileTheShutterIsOpen) {
+  write_frames(2);
+  moving_scene("", R"({"shutter": 1, "keys": {"film.size": [[0, [16, 16], "hold"], [0.5, [24, 24]]]}})");
+  EXPECT_TRUE(
+      contains(refused(frames("0")), "film.size is 16 x 16 at one moment of a frame and 24 x 24 at another one"));
 }
 
 TEST_F(CliFrames, BecomeAVideoWhereThereIsFfmpeg) {

@@ -105,6 +105,22 @@ TEST_F(ServeScene, NoFileOutsideOfTheFolderIsNamed) {
       std::string::npos);
 }
 
+TEST_F(ServeScene, NoFrameOutsideOfTheFolderIsNamed) {
+  TemporaryFolder other;
+  const auto secret = other.write("s_1.obj", "v 0 0 0\n");
+  folder.write("own_1.obj", "v 0 0 0\n");
+  folder.write("half_1.obj", "v 0 0 0\n");
+  std::filesystem::create_symlink(secret, folder / "half_2.obj");
+  std::filesystem::create_symlink(secret, folder / "link.bin");
+  std::filesystem::create_directory_symlink(other.path(), folder / "away");
+  scene.edit({R"(fabrics.0.mesh={"frames": "own_#.obj"})"}, "");
+  for (const std::string& name : {(other.path() / "s_#.obj").string(), std::string("half_#.obj"), std::string("link.bin"),
+                                  std::string("away/s_#.obj"), std::string("/etc/host#"), std::string("/nonexistent/#")}) {
+    const std::string set = R"(fabrics.0.mesh={"frames": ")" + name + "\"}";
+    EXPECT_NE(user_message([&] { scene.edit({set}, ""); }).find("lies outside of the scene's folder"), std::string::npos) << set;
+  }
+}
+
 TEST_F(ServeScene, SavesIntoItsFolderOnlyAndAsks) {
   scene.edit({"film.exposure=1", "fabrics.0.uv_metres=null", "fabrics.0.gauge={\"wales\": 30}"}, "");
   for (const char* name :
