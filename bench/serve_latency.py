@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Latency of `wale serve`: from the POST of an edit to the first picture of that edit, or a later one, on the wire.
 
-usage: bench/serve_latency.py WALE [--scene SCENE] [--set KEY=VALUE ...] [--repeats 15] [--random 3000]
+usage: bench/serve_latency.py WALE [--scene SCENE] [--set KEY=VALUE ...] [--repeats 15] [--random 3000]   (--repeats 0: memory alone)
 Prints a table: median, 90th percentile and worst of each kind of edit, before and after as many random edits, and the
 server's resident memory on the way.
 """
@@ -163,6 +163,8 @@ def measure(editor, repeats, generator):
         "pattern": lambda i: set_to(".pattern", ["rib_1x1", "stockinette"][i % 2]),
     }
     out = {}
+    if not repeats:
+        return out
     for name, make in kinds.items():
         times = []
         for i in range(repeats if name not in ("density", "pattern", "twist") else max(5, repeats // 2)):
@@ -189,7 +191,7 @@ def main():
     editor.density = editor.control("gauge.wales")["value"]
     print(f"{editor.cost['segments']} segments, {editor.cost['mrays']} Mrays/s, load {os.getloadavg()[0]:.1f}")
     before = measure(editor, args.repeats, generator)
-    memory = [editor.rss()]
+    memory = {0: editor.rss()}  # after so many random edits
     start = time.monotonic()
     cheap = [c for c in editor.state["controls"] if c["group"] in ("Colour", "Fibre", "Light", "View") and c["id"] != "camera.fov"]
     for i in range(args.random):
@@ -201,19 +203,17 @@ def main():
             raise RuntimeError(f"{c['id']} {value}: {status} {reply}")
         if i % 10 == 0 and status == 200:
             editor.wait(reply["revision"])
-        if i % (max(1, args.random // 6)) == 0:
-            memory.append(editor.rss())
+        if i + 1 == 300 or (i + 1) % max(1, args.random // 6) == 0:
+            memory[i + 1] = editor.rss()
     seconds = time.monotonic() - start
     editor.post("/reset")
     editor.settle(2)
-    memory.append(editor.rss())
     after = measure(editor, args.repeats, generator)
-    memory.append(editor.rss())
     print("| edit | median, s | 90 %% | worst | median after %d random edits | 90 %% | worst |" % args.random)
     print("|---|---|---|---|---|---|---|")
     for name in before:
         print("| " + name + " | " + " | ".join(f"{v:.3f}" for v in before[name] + after[name]) + " |")
-    print(f"random edits took {seconds:.0f} s; resident MB on the way: " + ", ".join(f"{m:.0f}" for m in memory))
+    print(f"random edits took {seconds:.0f} s; resident MB after edits: " + ", ".join(f"{i}: {m:.0f}" for i, m in sorted(memory.items())))
     print("exit status", editor.end())
 
 

@@ -41,32 +41,42 @@ RenderOptions ProgressiveRender::options(const std::filesystem::path& kernel_dir
 }
 
 ProgressiveRender::ProgressiveRender(const Device& device, std::filesystem::path kernel_dir)
-    : device_(device), options_(options(kernel_dir)), levels_{Level{8, {}}, Level{4, {}}, Level{2, {}}, Level{1, {}}} {}
+    : device_(device), options_(options(kernel_dir)), levels_{Level{8}, Level{4}, Level{2}, Level{1}} {}
 
-void ProgressiveRender::bind(const World& world, const IntegratorScene& integrator, const SceneDevice& scene,
-                             bool again) {
-  const DriverCall guard;
+void ProgressiveRender::bind(const World& world, const IntegratorScene& integrator, const SceneDevice& scene) {
   const DeviceTraits& traits = device_.traits();
-  const Features features = features_of(traits, world, integrator, options_);
+  features_ = features_of(traits, world, integrator, options_);
   frame_ = frame_of(world, integrator);
-  const bool same_size = width_ == world.camera.width && height_ == world.camera.height;
-  width_ = world.camera.width;
-  height_ = world.camera.height;
-  uint32_t pool = pool_of(traits, integrator, options_);
+  scene_ = &scene;
+  camera_ = world.camera;
+  pool_ = pool_of(traits, integrator, options_);
   // Such a driver compiles kernels once more for large launches, which waves this short do not need.
-  if (traits.compiles_at_launch) pool = std::min(pool, uint32_t(Device::kLargeGrid) - 64);
+  if (traits.compiles_at_launch) pool_ = std::min(pool_, uint32_t(Device::kLargeGrid) - 64);
   for (Level& level : levels_) {
-    const WCamera camera = shrunk(world.camera, level.shrink);
-    const uint32_t pixels = uint32_t(padded_pixels(camera.width, camera.height));
-    if (level.wave && same_size && level.wave->serves(scene, features)) {
-      level.wave->rebind(scene, features, camera, again);
-    } else {
-      level.wave.reset();
-      level.wave = std::make_unique<Wavefront>(device_, scene, features, camera, std::min(pool, std::max(pixels, 64u)),
-                                               options_.kernel_dir);
-    }
-    level.tiles = pixels / kTilePixels;
+    const WCamera camera = shrunk(camera_, level.shrink);
+    level.bound = false;
+    level.tiles = uint32_t(padded_pixels(camera.width, camera.height)) / kTilePixels;
   }
+}
+
+// A level's film is emptied when its turn comes, which may be never: edits come faster.
+Wavefront& ProgressiveRender::bound(Level& level) {
+  if (level.bound) return *level.wave;
+  const WCamera camera = shrunk(camera_, level.shrink);
+  if (level.wave && level.width == camera.width && level.height == camera.height &&
+      level.wave->serves(*scene_, features_)) {
+    level.wave->rebind(*scene_, features_, camera, !level.empty);
+  } else {
+    const uint32_t pixels = level.tiles * kTilePixels;
+    level.wave.reset();
+    level.wave = std::make_unique<Wavefront>(device_, *scene_, features_, camera,
+                                             std::min(pool_, std::max(pixels, 64u)), options_.kernel_dir);
+    level.width = camera.width;
+    level.height = camera.height;
+  }
+  level.empty = false;
+  level.bound = true;
+  return *level.wave;
 }
 
 // The finest that is there in time, as the version before was traced.
@@ -79,7 +89,8 @@ size_t ProgressiveRender::first_level() const {
 }
 
 void ProgressiveRender::restart(const World& world, const IntegratorScene& integrator, const SceneDevice& scene) {
-  bind(world, integrator, scene, false);
+  bind(world, integrator, scene);
+  for (Level& level : levels_) level.empty = true;
   level_ = first_level();
   sample_ = tile_ = 0;
   last_picture_ = 0;
@@ -88,23 +99,24 @@ void ProgressiveRender::restart(const World& world, const IntegratorScene& integ
 }
 
 void ProgressiveRender::resume(const World& world, const IntegratorScene& integrator, const SceneDevice& scene) {
-  bind(world, integrator, scene, true);
+  bind(world, integrator, scene);
 }
 
 bool ProgressiveRender::step() {
   const DriverCall guard;
   Level& level = levels_[level_];
+  Wavefront& wave = bound(level);
   const auto start = Clock::now();
-  const uint64_t before = rays_of(*level.wave);
+  const uint64_t before = rays_of(wave);
   const double wanted = seconds_per_path_ > 0 ? kWaveSeconds / seconds_per_path_ : kLeastPaths;
-  const uint32_t paths = uint32_t(std::clamp(wanted, double(kLeastPaths), double(level.wave->pool())));
-  const uint32_t count = std::min(std::max(1u, std::min(paths, level.wave->pool()) / kTilePixels), level.tiles - tile_);
+  const uint32_t paths = uint32_t(std::clamp(wanted, double(kLeastPaths), double(wave.pool())));
+  const uint32_t count = std::min(std::max(1u, std::min(paths, wave.pool()) / kTilePixels), level.tiles - tile_);
   std::vector<uint32_t> tiles(count);
   std::iota(tiles.begin(), tiles.end(), tile_);
-  level.wave->trace(frame_, tiles, sample_, 1);
+  wave.trace(frame_, tiles, sample_, 1);
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
   seconds_per_path_ = seconds / (double(count) * kTilePixels);
-  rays_ += rays_of(*level.wave) - before;
+  rays_ += rays_of(wave) - before;
   state_.seconds += seconds;
   state_.mrays = 1e-6 * double(rays_) / state_.seconds;
   tile_ += count;
@@ -127,7 +139,7 @@ bool ProgressiveRender::step() {
 Image ProgressiveRender::picture() {
   const Level& level =
       *std::find_if(levels_.begin(), levels_.end(), [&](const Level& l) { return l.shrink == state_.shrink; });
-  const int w = (width_ + level.shrink - 1) / level.shrink, h = (height_ + level.shrink - 1) / level.shrink;
+  const int w = level.width, h = level.height;
   const PixelSums sums = level.wave->film().read(0, level.tiles * kTilePixels);
   if (state_.samples >= 2) {
     constexpr size_t kTileSums = kTilePixels * kScrambles;
@@ -161,12 +173,6 @@ std::optional<double> ProgressiveRender::seconds_to(double goal) const {
   if (state_.error <= 0) return std::nullopt;
   const double ratio = state_.error / goal;  // noise falls as 1 / sqrt(samples)
   return std::max(0.0, state_.seconds * (ratio * ratio - 1));
-}
-
-uint64_t ProgressiveRender::bytes() const {
-  uint64_t sum = 0;
-  for (const Level& level : levels_) sum += level.wave ? level.wave->bytes() : 0;
-  return sum;
 }
 
 }  // namespace wale

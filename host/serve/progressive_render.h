@@ -37,23 +37,29 @@ class ProgressiveRender {
   const RenderState& state() const { return state_; }
   /// Seconds until the tiles' error is `goal`, as far as the last picture tells; nothing where it does not.
   std::optional<double> seconds_to(double goal) const;
-  uint64_t bytes() const;
 
   static RenderOptions options(const std::filesystem::path& kernel_dir);
 
  private:
   struct Level {
     int shrink;
-    std::unique_ptr<Wavefront> wave;
+    std::unique_ptr<Wavefront> wave{};
     uint32_t tiles = 0;
+    int width = 0, height = 0;  ///< of its film
+    bool empty = true;          ///< the film has nothing of this version
+    bool bound = false;         ///< to this version
   };
   size_t first_level() const;
-  void bind(const World& world, const IntegratorScene& integrator, const SceneDevice& scene, bool again);
+  void bind(const World& world, const IntegratorScene& integrator, const SceneDevice& scene);
+  Wavefront& bound(Level& level);
 
   const Device& device_;
   RenderOptions options_;
   WFrame frame_{};
-  int width_ = 0, height_ = 0;
+  Features features_;
+  WCamera camera_{};
+  const SceneDevice* scene_ = nullptr;
+  uint32_t pool_ = 0;
   std::array<Level, 4> levels_;
   size_t level_ = 0;
   uint32_t sample_ = 0, tile_ = 0;  ///< what is traced next on the level
