@@ -98,7 +98,7 @@ class Frames {
       Frame frame{at, {}, {}, false};
       for (const auto& output : args_.outputs) {
         frame.files.push_back(NumberedName::is_one(output) ? NumberedName(output).file(std::lround(at)) : output);
-        aovs_ |= output.extension() == ".exr";
+        aovs_ |= is_exr(output);
       }
       check(frame);
       frames_.push_back(std::move(frame));
@@ -249,14 +249,14 @@ class Frames {
 
   void make_video() {
     const auto& files = frames_.front().files;
-    const auto exr = std::find_if(files.begin(), files.end(), [](const auto& f) { return f.extension() == ".exr"; });
+    const auto exr = std::find_if(files.begin(), files.end(), [](const auto& f) { return is_exr(f); });
     const size_t which = exr == files.end() ? 0 : size_t(exr - files.begin());
     Progress bar("video", args_.quiet);
     write_video(args_.video, fps_, frames_.size(), [&](size_t k) {
       bar.update(double(k) / double(frames_.size()));
       const FilmScene film = scene_at(frames_[k].at).film;
       const Image image = read_image(frames_[k].files[which]);
-      const bool display = frames_[k].files[which].extension() == ".png";
+      const bool display = !is_exr(frames_[k].files[which]);
       return VideoFrame{image.width, image.height,
                         display_bytes(image, display ? 0 : film.exposure, display ? "srgb" : film.view)};
     });

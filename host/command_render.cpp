@@ -152,7 +152,7 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   bool aovs = false;
   for (const auto& output : args.outputs) {
     require_writable(output);
-    aovs |= output.extension() == ".exr";
+    aovs |= is_exr(output);
   }
   if (!args.stats.empty()) require_writable_path(args.stats);
   const auto named = named_devices(args.device);

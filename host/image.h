@@ -34,6 +34,8 @@ void write_image(const Image& image, const std::filesystem::path& file, double e
 
 /// True when write_image could write there; checked before rendering starts.
 void require_writable(const std::filesystem::path& file);
+/// By its suffix, in letters of any size; otherwise an image is written as PNG, ready for a screen.
+bool is_exr(const std::filesystem::path& file);
 
 /// The picture as 8-bit RGB, row after row, sRGB encoded.
 std::vector<unsigned char> display_bytes(const Image& image, double exposure, const std::string& view);

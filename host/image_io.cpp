@@ -118,10 +118,10 @@ void write_image(const Image& image, const std::filesystem::path& file, double e
   if (values == 0 || image.pixels.size() != values)
     bug("write_image: {} values for {} x {} pixels of {} channels", image.pixels.size(), image.width, image.height,
         image.channels.size());
-  if (suffix_of(file) == ".png")
-    write_png(image, file, exposure, view);
-  else
+  if (is_exr(file))
     write_exr(image, file);
+  else
+    write_png(image, file, exposure, view);
 }
 
 std::optional<std::string> image_text(const std::filesystem::path& file, const std::string& name) {
@@ -133,6 +133,8 @@ std::optional<std::string> image_text(const std::filesystem::path& file, const s
   source.read(0, head.data(), head.size());
   return suffix_of(file) == ".png" ? png_text(head, name) : exr_text(head, name);
 }
+
+bool is_exr(const std::filesystem::path& file) { return suffix_of(file) == ".exr"; }
 
 void require_writable(const std::filesystem::path& file) {
   const std::string suffix = suffix_of(file);

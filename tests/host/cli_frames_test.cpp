@@ -61,6 +61,14 @@ TEST_F(CliFrames, AreMadeOnceAndKept) {
   EXPECT_TRUE(contains(run_wale(frames("0..2")).err, "all 3 frames are finished"));
 }
 
+TEST_F(CliFrames, TakeSuffixesInCapitalsToo) {
+  write_frames(1);
+  moving_scene();
+  ASSERT_EQ(run_wale({"render", scene_, "-o", at("f_##.EXR"), "--frames", "0", "--spp", "8"}).status, 0);
+  ASSERT_EQ(run_wale(frames("0")).status, 0);
+  EXPECT_EQ(read_image(folder_ / "f_00.EXR").channels, read_image(folder_ / "f_00.exr").channels);
+}
+
 // A frame is the same whichever frames were made before it.
 TEST_F(CliFrames, DoNotDependOnTheirPast) {
   write_frames(3);
