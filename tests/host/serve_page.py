@@ -117,13 +117,17 @@ class Picture:
         self.columns = [sum(self.luma[x::self.w]) / self.h for x in range(self.w)]
         self.rows = [sum(self.luma[y * self.w:(y + 1) * self.w]) / self.w for y in range(self.h)]
 
-    def difference(self, other):
-        """Mean distance of blocks of 4 x 4 pixels, in steps of 1 / 255."""
-        blocks, wide = {}, self.w // 4
+    def difference(self, other, side=4):
+        """Mean distance of blocks of that many pixels a side, in steps of 1 / 255."""
+        blocks, wide = {}, self.w // side
         for i, (a, b) in enumerate(zip(self.luma, other.luma)):
-            key = i // self.w // 4 * wide + i % self.w // 4
-            blocks[key] = blocks.get(key, 0) + (a - b) / 16
+            key = i // self.w // side * wide + i % self.w // side
+            blocks[key] = blocks.get(key, 0) + (a - b) / side**2
         return sum(abs(v) for v in blocks.values()) / len(blocks)
+
+    def change(self, other):
+        """The same by the size at which it stands out most: noise falls with a block's side, what is seen does not."""
+        return max(self.difference(other, side) * side / 4 for side in (4, 8, 12, 24))
 
     def share(self, horizontal, first):
         """Of the light, in the left or upper half."""
@@ -184,9 +188,19 @@ def main():
                     raise TimeoutError(what + ": " + str(page.run("document.body.innerText"))[:2000])
                 time.sleep(0.05)
 
-        def shown():
-            wait("state && waiting.size === 0 && state.views.every((v, i) => kept.has(i + ':' + state.revision))", "a picture")
-            return [Picture(k) for k in page.run("state.views.map((v, i) => kept.get(i + ':' + state.revision))")]
+        def shown(exact=True):
+            for _ in range(8):
+                wait("state && waiting.size === 0 && state.views.every((v, i) => kept.has(i + ':' + state.revision))", "a picture")
+                pictures = [Picture(k) for k in page.run("state.views.map((v, i) => kept.get(i + ':' + state.revision))")]
+                if not exact or all(p.samples == SAMPLES for p in pictures):
+                    return pictures
+                # The viewer was slow and that picture is gone: the same version once more, after another one.
+                there, back = ("redo", "undo") if page.run("state.can_redo") else ("undo", "redo")
+                for button in (there, back):
+                    before = page.run("state.revision")
+                    page.run(f"document.getElementById('{button}').click()")
+                    wait(f"state.revision > {before} && document.querySelector('#stage canvas').dataset.revision > {before}", button)
+            raise TimeoutError(f"no picture of {SAMPLES} samples")
 
         def refined(samples):
             wait(f"state && document.querySelectorAll('#stage canvas').length === state.views.length && "
@@ -201,13 +215,12 @@ def main():
             wait(f"state.revision > {before} || rows.get({json.dumps(control)}).error.textContent", control)
             error = page.run(f"rows.has({json.dumps(control)}) ? rows.get({json.dumps(control)}).error.textContent : ''")
             expect(not error, f"{control} = {value} is taken {error}")
-            return shown()
+            return shown(exact=not control.startswith("film."))
 
         def undo():
             before = page.run("state.revision")
             page.run("document.getElementById('undo').click()")
             wait(f"state.revision > {before}", "undo")
-            return shown()
 
         def set_any(text):
             before = page.run("state.revision")
@@ -243,8 +256,7 @@ def main():
 
         def changed(start, limit, control, value, says, text):
             now = turn(control, value)[0]
-            d = start.difference(now)
-            expect(now.samples == SAMPLES or control.startswith("film."), f"{control} = {value}: at {now.samples} samples")
+            d = start.change(now)
             expect(d > 2 * limit, f"{control} = {value}: the picture changes, {d:.2f} against noise {limit:.2f}")
             holds, figure = says(now)
             expect(holds, f"{control} = {value}: {text}, {figure}")
@@ -299,7 +311,7 @@ def main():
             changed(base, noise, *check)
         near = turn("camera.fov", 2)[0]
         set_any("integrator.seed=1")
-        near_noise = near.difference(shown()[0])
+        near_noise = near.change(shown()[0])
         undo()
         for check in near_checks:
             changed(near, near_noise, *check)
