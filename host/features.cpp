@@ -50,6 +50,7 @@ std::string Features::options() const {
   define(double_precision, "W_DOUBLE");
   if (relaxed_math) out += " -cl-fast-relaxed-math";
   define(aovs, "W_AOVS");
+  define(gradients, "W_GRADIENTS");
   define(ply_colors, "W_HAS_PLY_COLORS");
   return out;
 }
@@ -64,6 +65,7 @@ Features Features::with(const Features& others) const {
   all.lights |= others.lights;
   all.detail |= others.detail;
   all.aovs |= others.aovs;
+  all.gradients |= others.gradients;
   all.ply_colors |= others.ply_colors;
   // The other local stages need cells, which lattices do not have.
   all.procedural |= others.procedural && local_stage == LocalStage::exact;

@@ -30,6 +30,7 @@ struct Features {
   bool double_precision = false;             ///< rays and shading in double, one lane
   bool relaxed_math = false;                 ///< the compiler may reorder and approximate
   bool aovs = false;
+  bool gradients = false;  ///< derivatives by the ply material, in the place of feature images
   bool mesh_warp = false;       ///< some plies are warped by the base mesh itself
   bool stored_lattice = false;  ///< some are warped by a lattice, and stored
   bool procedural = false;      ///< some leaves keep no points
@@ -38,6 +39,9 @@ struct Features {
   Normals normals = Normals::rotation_minimising;  ///< a value: no definition
   int lanes = 1;
   bool simt = false;  ///< rays go down quantised nodes, one per work-item
+
+  /// Four vectors a path and a pixel beside the radiance.
+  bool four_vectors() const { return aovs || gradients; }
 
   /// Camera rays go in packets of `lanes` (kernels/geometry/traverse_packet.clh).
   bool packets() const { return (plies || fibres) && local_stage == LocalStage::exact && lanes == W_NODE_WIDTH; }

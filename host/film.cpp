@@ -72,4 +72,27 @@ Image develop(const FilmSums& sums, const double origin[3]) {
   return image;
 }
 
+Image develop_gradients(const FilmSums& sums) {
+  FilmSums radiance{sums.width, sums.height, sums.radiance, {}, {}};
+  const double origin[3] = {0, 0, 0};
+  const Image plain = develop(radiance, origin);
+  Image image{plain.width, plain.height, plain.channels, {}};
+  for (const char* name : kGradientNames)
+    for (const char* channel : {".R", ".G", ".B"}) image.channels.push_back(std::string(name) + channel);
+  const size_t before = plain.channels.size(), stride = image.channels.size();
+  image.pixels.resize(size_t(image.width) * size_t(image.height) * stride);
+  for (size_t i = 0; i < size_t(image.width) * size_t(image.height); ++i) {
+    const float* in = plain.pixels.data() + i * before;
+    float* out = image.pixels.data() + i * stride;
+    std::copy_n(in, before, out);
+    const float count = in[6];
+    for (size_t k = 0; k < W_GRADIENT_COUNT; ++k) {
+      const w_float4& sum = sums.aov[i * W_GRADIENT_COUNT + k];
+      const float values[3] = {sum.x, sum.y, sum.z};
+      for (size_t c = 0; c < 3; ++c) out[before + 3 * k + c] = count > 0 ? values[c] / count : 0.0f;
+    }
+  }
+  return image;
+}
+
 }  // namespace wale

@@ -47,9 +47,10 @@ std::vector<MemoryNeed> memory_needs(const World& world, const Features& feature
   }
   const WCamera& camera = world.camera;
   const uint64_t pixels = padded_pixels(camera.width, camera.height);
-  const uint64_t pixel_bytes = kScrambles * sizeof(w_float4) + (features.aovs ? 4 * sizeof(w_float4) + 4 : 0);
-  const uint64_t path_bytes = 10 * sizeof(w_float4) + 8 + 9 * 4 + (features.aovs ? 4 * sizeof(w_float4) : 0);
-  const uint64_t path_buffer = (features.aovs ? 4 : 1) * sizeof(w_float4);
+  const uint64_t pixel_bytes = kScrambles * sizeof(w_float4) + (features.four_vectors() ? 4 * sizeof(w_float4) + 4 : 0);
+  const uint64_t path_bytes = 10 * sizeof(w_float4) + 8 + 9 * 4 + (features.aovs ? 4 * sizeof(w_float4) : 0) +
+                              (features.gradients ? 3 * W_GRADIENT_COUNT * sizeof(w_float4) : 0);
+  const uint64_t path_buffer = (features.four_vectors() ? 4 : 1) * sizeof(w_float4);
   const double fits = std::sqrt(std::min(1.0, 0.5 * double(traits.global_bytes) / double(pixels * pixel_bytes)));
   const std::string fewer = "fewer repeats, a coarser gauge or a larger tolerance";
   std::vector<MemoryNeed> needs = {

@@ -39,7 +39,7 @@ class Job {
       : devices_(devices),
         options_(options),
         progress_(progress),
-        aovs_(options.aovs || options.also.aovs),
+        aovs_(options.aovs || options.also.aovs || options.gradients),
         frame_(frame_of(world, integrator)) {
     width_ = world.camera.width, height_ = world.camera.height;
     pixels_ = uint32_t(padded_pixels(width_, height_));
@@ -92,7 +92,8 @@ class Job {
     }
     const double origin[3] = {world.origin.x, world.origin.y, world.origin.z};
     result_.reached = film_->reached(options_.error, floor_.value_or(0));
-    result_.image = develop(film_->gather(world.camera.width, world.camera.height, aovs_), origin);
+    const FilmSums sums = film_->gather(world.camera.width, world.camera.height, aovs_);
+    result_.image = options_.gradients ? develop_gradients(sums) : develop(sums, origin);
     return std::move(result_);
   }
 
@@ -291,7 +292,11 @@ uint32_t pool_of(const DeviceTraits& traits, const IntegratorScene& integrator, 
 
 Features features_of(const DeviceTraits& traits, const World& world, const IntegratorScene& integrator,
                      const RenderOptions& options) {
-  return analyse(world, integrator, options.aovs, traits).with(options.also);
+  Features features = analyse(world, integrator, options.aovs, traits).with(options.also);
+  features.gradients |= options.gradients;
+  if (features.gradients && (features.aovs || features.fibres))
+    bug("render: derivatives beside feature images, or of single fibres");
+  return features;
 }
 
 Rendered render(std::span<const RenderDevice> devices, const World& world, const IntegratorScene& integrator,

@@ -23,6 +23,7 @@ struct RenderOptions {
   double seconds = 0;  ///< > 0: stop after this time, but not before every pixel has a sample
   uint32_t pool = 0;   ///< paths in flight; 0 = from the device
   bool aovs = false;
+  bool gradients = false;  ///< derivatives by the plies' material in the place of feature images; of plies alone
   Features also;  ///< built in beside what the scene calls for
   bool count_cpu_time = false;  ///< stages by CPU time: see Wavefront::count_cpu_time
   RayRecord* record = nullptr;  ///< keeps the rays that are sent

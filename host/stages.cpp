@@ -63,7 +63,7 @@ std::vector<Stage> geometry_stages(const Features& f) {
 
 std::vector<Stage> wavefront_stages(const Features& f) {
   const bool surfaces = f.triangles || f.spheres;
-  const double shadow = f.lights ? kShadowRay : 0, features = f.aovs ? 4 * kVec : 0;
+  const double shadow = f.lights ? kShadowRay : 0, features = f.four_vectors() ? 4 * kVec : 0;
   const double shade = kWord + 2 * kRay + 2 * kVec + kVec + kUv + kWord + shadow;
   const std::string paths = "stages/paths.cl", trace = "stages/trace.cl";
   return {
@@ -123,8 +123,8 @@ std::vector<Stage> wavefront_stages(const Features& f) {
        .program = paths},
       {"stages/accumulate_aov.cl",
        {"accumulate_aov"},
-       f.aovs,
-       f.aovs ? "feature images" : "no .exr is written",
+       f.four_vectors(),
+       f.gradients ? "derivative images" : f.aovs ? "feature images" : "no .exr is written",
        3 * features},
   };
 }

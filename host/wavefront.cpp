@@ -37,7 +37,7 @@ Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Featu
       camera_(camera),
       kernel_dir_(kernel_dir),
       pool_(std::max(64u, pool)),
-      film_(device, camera.width, camera.height, features.aovs) {
+      film_(device, camera.width, camera.height, features.four_vectors()) {
   const auto vec = [&](Buffer<w_float4>& buffer, size_t count) {
     buffer = Buffer<w_float4>(device_, count);
     bytes_ += buffer.bytes();
@@ -58,14 +58,18 @@ Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Featu
   ints(chunk_, (pool_ / kChunk + 1) * bins());
   ints(queue_counts_, kQueueCounts);
   ints(tiles_, pool_ / kTilePixels);
-  vec(aov_, features_.aovs ? size_t(pool_) * 4 : 0);
+  vec(aov_, features_.four_vectors() ? size_t(pool_) * 4 : 0);
+  vec(score_, features_.gradients ? size_t(pool_) * W_GRADIENT_COUNT : 0);
+  vec(shadow_gradient_, features_.gradients ? size_t(pool_) * W_GRADIENT_COUNT : 0);
   build_programs();
 }
 
 cl_uint Wavefront::bind_path(cl::Kernel& k, cl_uint first) const {
   set_args(k, first, ray_o_.cl(), ray_l_.cl(), ray_d_.cl(), weight_.cl(), hit_.cl(), hit_uv_.cl(), radiance_.cl(),
            shadow_o_.cl(), shadow_l_.cl(), shadow_d_.cl(), shadow_c_.cl(), mask_.cl(), tiles_.cl());
-  return first + 13;
+  if (!features_.gradients) return first + 13;
+  set_args(k, first + 13, score_.cl(), shadow_gradient_.cl(), aov_.cl());
+  return first + 16;
 }
 
 void Wavefront::bind_intersect(const char* name) {
@@ -177,7 +181,7 @@ void Wavefront::bind() {
     set_args(k, next, shadow_list_.cl(), queue_counts_.cl());
   }
   set_args(kernel("accumulate"), 1, camera_, tiles_.cl());
-  if (features_.aovs) set_args(kernel("accumulate_aov"), 1, camera_, tiles_.cl());
+  if (features_.four_vectors()) set_args(kernel("accumulate_aov"), 1, camera_, tiles_.cl());
 }
 
 void Wavefront::launch(const std::string& name, size_t items, bool camera_rays) {
@@ -289,7 +293,7 @@ void Wavefront::trace(WFrame frame, const std::vector<uint32_t>& tiles, uint32_t
     const auto [band_first, band_pixels] = film_.pixels_of(band);
     set_args(kernel("accumulate"), 3, band_first, band_pixels, radiance_.cl(), film_.radiance(band), scene_->events());
     launch("accumulate", pixels);
-    if (!features_.aovs) continue;
+    if (!features_.four_vectors()) continue;
     set_args(kernel("accumulate_aov"), 3, band_first, band_pixels, aov_.cl(), film_.aov(band), film_.ply(band));
     launch("accumulate_aov", pixels);
   }

@@ -109,7 +109,8 @@ class Wavefront {
   Buffer<std::array<float, 2>> hit_uv_;
   Buffer<uint32_t> mask_, active_[2], ply_list_, surface_list_, miss_list_, fibre_list_, shadow_list_, spare_list_,
       chunk_, queue_counts_, tiles_;
-  Buffer<w_float4> aov_;
+  Buffer<w_float4> aov_;  ///< or the gradients
+  Buffer<w_float4> score_, shadow_gradient_;
   FilmDevice film_;
 };
 

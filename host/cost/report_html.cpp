@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geom/error.h"
 #include "host/cost/report.h"
-#include "host/image_coder.h"
+#include "host/page_parts.h"
 #include "host/progress.h"
 
 namespace wale::cost {
@@ -13,43 +12,9 @@ namespace {
 
 constexpr int kShownSide = 256;  // pixels of a picture that are shown: its middle
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  return out;
-}
-
-// RFC 4648.
-std::string base64(const std::string& bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t word = 0;
-    for (size_t k = 0; k < 3; ++k)
-      word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (size_t k = 0; k < 4; ++k) out += i + k > bytes.size() ? '=' : kDigits[word >> (18 - 6 * k) & 63];
-  }
-  return out;
-}
-
 // The middle of a picture as a PNG in the page; color(pixel, out): three display values in [0,1].
 template <typename Color>
-std::string picture_tag(const Picture& of, const std::string& what, const Color& color) {
+std::string shown_tag(const Picture& of, const std::string& what, const Color& color) {
   const int width = std::min(of.width, kShownSide), height = std::min(of.height, kShownSide);
   const int x0 = (of.width - width) / 2, y0 = (of.height - height) / 2;
   std::vector<unsigned char> bytes;
@@ -59,16 +24,12 @@ std::string picture_tag(const Picture& of, const std::string& what, const Color&
       color(size_t(y0 + y) * size_t(of.width) + size_t(x0 + x), display);
       for (const float v : display) bytes.push_back(static_cast<unsigned char>(std::lround(255 * v)));
     }
-  std::string png;
-  if (const std::string failure = image_coder().encode_png(bytes, width, height, png); !failure.empty())
-    bug("PNG: {}", one_line(failure));
   const int shown = width * std::max(1, kShownSide / std::max(width, height));
-  return fmt::format("<img width=\"{}\" alt=\"{}\" title=\"{}\" src=\"data:image/png;base64,{}\">", shown, what, what,
-                     base64(png));
+  return picture_tag(bytes, width, height, shown, what);
 }
 
 std::string look(const CostReport& report, const Picture& picture, const std::string& what) {
-  return picture_tag(picture, what, [&](size_t p, float* display) {
+  return shown_tag(picture, what, [&](size_t p, float* display) {
     view_transform(&picture.rgb[3 * p], report.exposure, report.view, display);
   });
 }
@@ -76,7 +37,7 @@ std::string look(const CostReport& report, const Picture& picture, const std::st
 // Blue where the level is darker than the reference, red where it is brighter, white where they agree.
 std::string difference(const CostReport& report, const Picture& picture, const std::vector<double>& weights,
                        double range) {
-  return picture_tag(picture, "difference", [&](size_t p, float* display) {
+  return shown_tag(picture, "difference", [&](size_t p, float* display) {
     double d = 0;
     for (size_t c = 0; c < 3; ++c) d += (double(picture.rgb[3 * p + c]) - report.reference.rgb[3 * p + c]) / 3;
     d = std::clamp(d * std::sqrt(weights[p] * 3 * double(weights.size())) / range, -1.0, 1.0);
@@ -105,20 +66,20 @@ std::string spread_cell(const Spread& s) {
 std::string table_row(const CostReport& report, const Level& row) {
   const std::string classes = row.own ? " class=own" : "";
   const std::string names =
-      fmt::format("<tr{}><td>{}</td><td>{}</td>", classes, escaped(row.option), escaped(row.level));
+      fmt::format("<tr{}><td>{}</td><td>{}</td>", classes, html_text(row.option), html_text(row.level));
   const UnitResult* r = report.result(row);
   if (!r)
     return names + fmt::format("<td class=out colspan=12>left out: {}</td></tr>\n",
-                               escaped(row.unit ? report.results[*row.unit].left_out : row.skipped));
+                               html_text(row.unit ? report.results[*row.unit].left_out : row.skipped));
   const std::optional<double> radii = radii_of(report, row);
-  std::string bias = escaped(bias_of(report, row));
+  std::string bias = html_text(bias_of(report, row));
   if (row.beyond) bias += "<small> (beyond the reference)</small>";
   return names +
          fmt::format("<td>{}</td><td>{}</td><td>{}</td>", figure(r->cpu_ns.middle), figure(r->wall_ns.middle),
                      figure(r->variance)) +
          spread_cell(r->time) + spread_cell(r->equal_noise) +
          fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", bias,
-                     escaped(change_of(report, row)), figure(r->flip), radii ? figure(*radii) : "&ndash;",
+                     html_text(change_of(report, row)), figure(r->flip), radii ? figure(*radii) : "&ndash;",
                      figure(1e-6 * double(r->start.bytes)), figure(r->start.all()),
                      fmt::format("{} x {}", r->repetitions, r->samples));
 }
@@ -134,16 +95,16 @@ img{image-rendering:pixelated;margin-right:4px}svg{max-width:100%;height:auto})"
 
 std::string report_html(const CostReport& report, const std::string& plot_svg) {
   std::string out =
-      "<!doctype html>\n<html lang=en><meta charset=utf-8><title>What accuracy costs: " + escaped(report.scene) +
+      "<!doctype html>\n<html lang=en><meta charset=utf-8><title>What accuracy costs: " + html_text(report.scene) +
       "</title>\n<style>" + kStyle + "</style>\n";
   out += fmt::format(
       "<h1>What accuracy costs: {}</h1>\n<p>{} x {} pixels, {} ({}), {}.<br><code>{}</code><br>{} of {}{}.</p>\n",
-      escaped(report.scene), report.reference.width, report.reference.height, escaped(report.device),
-      escaped(report.driver), escaped(report.date), escaped(report.command), duration_text(report.seconds_used),
-      duration_text(60 * report.minutes), report.ended.empty() ? "" : "; ended early: " + escaped(report.ended));
+      html_text(report.scene), report.reference.width, report.reference.height, html_text(report.device),
+      html_text(report.driver), html_text(report.date), html_text(report.command), duration_text(report.seconds_used),
+      duration_text(60 * report.minutes), report.ended.empty() ? "" : "; ended early: " + html_text(report.ended));
   out +=
       fmt::format("<p>The scene as it is: {}.<br>The reference: {}; noise of its mean {} % (relative RMS).</p>\n",
-                  escaped(report.base_settings), escaped(report.reference_text), figure(100 * report.reference_noise));
+                  html_text(report.base_settings), html_text(report.reference_text), figure(100 * report.reference_noise));
   out += plot_svg.substr(std::min(plot_svg.find("<svg"), plot_svg.size()));
   out +=
       "\n<p>Each level changes one option of the scene. A level on the grey stair is beaten by no other in both price "
@@ -168,7 +129,7 @@ std::string report_html(const CostReport& report, const std::string& plot_svg) {
   std::string hidden;
   for (const Level& row : report.levels.rows)
     if (const UnitResult* r = report.result(row); r && !r->bias.resolved() && !report.is_reference(row))
-      hidden += fmt::format("<li>{} {}: {}\n", escaped(row.option), escaped(row.level), escaped(bias_of(report, row)));
+      hidden += fmt::format("<li>{} {}: {}\n", html_text(row.option), html_text(row.level), html_text(bias_of(report, row)));
   if (!hidden.empty()) out += "<h2>Not resolved from noise</h2>\n<ul>" + hidden + "</ul>\n";
   const double range = range_of(report);
   const std::vector<double> weights = relative_weights(report.reference);
@@ -185,7 +146,7 @@ std::string report_html(const CostReport& report, const std::string& plot_svg) {
     shown[*row.unit] = true;
     out += fmt::format("<figure>{}{}<figcaption>{} {}: {}, time {}</figcaption></figure>\n",
                        look(report, r->mean, "the level"), difference(report, r->mean, weights, range),
-                       escaped(row.option), escaped(row.level), escaped(bias_of(report, row)),
+                       html_text(row.option), html_text(row.level), html_text(bias_of(report, row)),
                        figure(r->equal_noise.middle));
   }
   return out + "</div>\n</html>\n";

@@ -176,6 +176,14 @@ typedef struct WPlyMaterial {
   float hits_back, pad0, pad1, pad2; /* hits_back: fibre hits of lobe B's light per hit of lobe F's */
 } WPlyMaterial;
 
+/* Derivatives that a path gathers with W_GRADIENTS, an rgb each: by the body colours (of a channel by its own colour),
+   by the highlight's width beta_r, radians, and by the fibres' tilt. */
+#define W_GRADIENT_TRANSMIT 0
+#define W_GRADIENT_REFLECT 1
+#define W_GRADIENT_ROUGHNESS 2
+#define W_GRADIENT_TILT 3
+#define W_GRADIENT_COUNT 4
+
 /* Fibre detail of one ply material (kernels/appearance/fibre_detail.clh). Lengths in ply radii unless said. */
 #define W_DETAIL_BINS 64
 #define W_DETAIL_NONE 0

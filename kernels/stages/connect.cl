@@ -21,5 +21,10 @@ __kernel void connect(WFrame frame, W_PATH_PARAMS, W_SCENE_PARAMS, __global cons
   ray.tmax = shadow_d[slot].w;
   const uint pixel = w_slot_pixel(&frame, wave_tiles, slot);
   ray.key = w_shadow_key(pixel, w_slot_sample(&frame, slot), depth, frame.seed, frame.opaque_shadows);
-  if (w_connects(&scene, &ray)) radiance[slot].xyz += shadow_c[slot].xyz;
+  if (!w_connects(&scene, &ray)) return;
+  radiance[slot].xyz += shadow_c[slot].xyz;
+#ifdef W_GRADIENTS
+  for (uint k = slot * W_GRADIENT_COUNT; k < (slot + 1) * W_GRADIENT_COUNT; ++k)
+    gradient[k].xyz += shadow_gradient[k].xyz;
+#endif
 }

@@ -11,6 +11,9 @@ __kernel void generate(WFrame frame, WCamera camera, W_PATH_PARAMS, __global uin
   list[slot] = slot;
   radiance[slot] = (float4)(0.0f);
   weight[slot] = (float4)(1.0f);
+#ifdef W_GRADIENTS
+  for (uint k = slot * W_GRADIENT_COUNT; k < (slot + 1) * W_GRADIENT_COUNT; ++k) score[k] = gradient[k] = (float4)(0.0f);
+#endif
   const uint pixel = w_slot_pixel(&frame, wave_tiles, slot);
   int x, y;
   const int inside = w_pixel_xy(pixel, camera.width, camera.height, &x, &y);

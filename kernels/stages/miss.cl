@@ -25,6 +25,8 @@ __kernel void miss(WFrame frame, W_PATH_PARAMS, W_LIGHT_PARAMS, __global float4*
     if (frame.light_sampling == 1) return;
     if (frame.light_sampling == 0) share = w_mis(density, w_environment_pdf(&lights, d));
   }
-  radiance[slot].xyz += w_float3(w_real3_of(weight[slot]) * w_environment_radiance(&lights, d) * share);
+  const w_real3 c = w_real3_of(weight[slot]) * w_environment_radiance(&lights, d) * share;
+  radiance[slot].xyz += w_float3(c);
+  W_ADD_GRADIENTS(slot, c)
 #endif
 }

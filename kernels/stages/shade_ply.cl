@@ -3,6 +3,9 @@
    (docs/appearance.md), and meets whatever lies ahead, its own segment excepted. */
 #include "appearance/ply_bsdf.clh"
 #include "appearance/ply_color.clh"
+#ifdef W_GRADIENTS
+#include "appearance/ply_gradient.clh"
+#endif
 #include "geometry/ply_surface.clh"
 #include "lights.clh"
 #include "sampling/dimensions.clh"
@@ -67,6 +70,10 @@ W_CALL void w_shade_ply(const WFrame* frame, W_PATH_PARAMS, const WScene* scene,
 #endif
   const WPlyShade shade = w_ply_setup_detail(material, s.smooth_t, s.smooth_n, wv, fibre);
 
+#ifdef W_GRADIENTS
+  const WPlyShade tilted = w_ply_setup_tilted(material, s.smooth_t, s.smooth_n, wv, fibre);
+#endif
+
   // Within the rounding of the lobes' energies, 2e-6.
   if (w_max3(shade.a[0] + shade.a[1] + shade.a[2]) > R(1.00001)) atomic_inc(scene->counters + W_EVENT_ENERGY);
 
@@ -108,6 +115,13 @@ W_CALL void w_shade_ply(const WFrame* frame, W_PATH_PARAMS, const WScene* scene,
       if (w_max3(c) > R(0.0)) {
         bins |= W_BIN_SHADOW;
         W_STORE_SHADOW_RAY(slot, s.anchor, take_b ? middle : out, h.code, W_NONE, l, c)
+#ifdef W_GRADIENTS
+        const WPlyGradient g = w_ply_gradient(&shade, &tilted, material.beta_r, l.direction, f);
+        for (uint k = 0; k < W_GRADIENT_COUNT; ++k) {
+          const w_real3 all = w_real3_of(score[slot * W_GRADIENT_COUNT + k]) + w_ply_score(g.d[k], f);
+          shadow_gradient[slot * W_GRADIENT_COUNT + k] = (float4)(w_float3(c * all), 0.0f);
+        }
+#endif
       }
     }
   }
@@ -118,6 +132,11 @@ W_CALL void w_shade_ply(const WFrame* frame, W_PATH_PARAMS, const WScene* scene,
   const w_real3 f = w_ply_eval(&shade, w, &density);
   // A direction whose density has underflowed was drawn from the far tail of its lobe: the lobe's own weight is exact.
   w_real3 next = w_real3_of(weight[slot]) * (density > R(1e-20) ? f / density : shade.a[lobe] / shade.q[lobe]);
+#ifdef W_GRADIENTS
+  const WPlyGradient g = w_ply_gradient(&shade, &tilted, material.beta_r, w, f);
+  for (uint k = 0; k < W_GRADIENT_COUNT; ++k)
+    score[slot * W_GRADIENT_COUNT + k].xyz += w_float3(w_ply_score(g.d[k], f));
+#endif
   bins |= w_continue(frame, &next, depth, &sampler);
   W_STORE_PATH_RAY(slot, s.anchor, w_leave(&s, out, middle, w), h.code, W_NONE, w, density, next)
   mask[slot] = bins;

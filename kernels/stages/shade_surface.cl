@@ -54,8 +54,10 @@ W_CALL void w_shade_surface(const WFrame* frame, W_PATH_PARAMS, const WLights* l
                                                 : w_light_pdf_sphere(lights, (uint)m.light, from, d, t);
       share = w_mis(density, pdf);
     }
-    gathered += w_real3_of(weight[slot]) * w_real3_of(m.emission) * share;
+    const w_real3 c = w_real3_of(weight[slot]) * w_real3_of(m.emission) * share;
+    gathered += c;
     radiance[slot].xyz = w_float3(gathered);
+    W_ADD_GRADIENTS(slot, c)
   }
 
   const w_real3 n_geo = front ? ng : -ng;
@@ -89,6 +91,10 @@ W_CALL void w_shade_surface(const WFrame* frame, W_PATH_PARAMS, const WLights* l
         if (w_max3(c) > R(0.0)) {
           bins |= W_BIN_SHADOW;
           W_STORE_SHADOW_RAY(slot, p, lift, W_NONE, skip, l, c)
+#ifdef W_GRADIENTS
+          for (uint k = slot * W_GRADIENT_COUNT; k < (slot + 1) * W_GRADIENT_COUNT; ++k)
+            shadow_gradient[k] = (float4)(w_float3(c) * score[k].xyz, 0.0f);
+#endif
         }
       }
     }
