@@ -11,9 +11,10 @@ namespace wale {
 struct ImageHeader {
   int width = 0, height = 0;
   std::vector<std::string> channels;
-  int alpha = -1;     ///< channel of it, -1: none
-  bool deep = false;  ///< several samples a pixel
-  bool srgb = false;  ///< integers that are sRGB encoded
+  int alpha = -1;        ///< channel of it, -1: none
+  bool deep = false;     ///< several samples a pixel
+  bool srgb = false;     ///< integers that are sRGB encoded
+  int integer_bits = 0;  ///< of one value; 0: floating point
 };
 
 /// What OpenImageIO does for Wale. All return what went wrong, in OpenImageIO's words, or an empty string.

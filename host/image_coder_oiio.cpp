@@ -28,8 +28,9 @@ std::string decode(std::string_view bytes, const std::string& format, const std:
   const std::string space = spec.get_string_attribute("oiio:ColorSpace", "sRGB");
   std::vector<std::string> channels = spec.channelnames;
   channels.resize(size_t(std::max(0, spec.nchannels)));
+  const bool integers = !spec.format.is_floating_point();
   accept({spec.width, spec.height, channels, spec.alpha_channel, spec.deep,
-          !spec.format.is_floating_point() && !OIIO::Strutil::iequals(space, "linear")});
+          integers && !OIIO::Strutil::iequals(space, "linear"), integers ? int(spec.format.size()) * 8 : 0});
   image = {spec.width, spec.height, std::move(channels), {}, {}, {}};
   for (const auto& attribute : spec.extra_attribs) {
     const std::string name = attribute.name().string();
@@ -66,8 +67,7 @@ std::string encode_png(const std::vector<unsigned char>& rgb, int width, int hei
   return encode("png", display_spec(width, height), rgb, png);
 }
 
-std::string encode_jpeg(const std::vector<unsigned char>& rgb, int width, int height, int quality,
-                        std::string& jpeg) {
+std::string encode_jpeg(const std::vector<unsigned char>& rgb, int width, int height, int quality, std::string& jpeg) {
   OIIO::ImageSpec spec = display_spec(width, height);
   spec.attribute("Compression", "jpeg:" + std::to_string(quality));
   spec.attribute("jpeg:subsampling", "4:4:4");

@@ -12,6 +12,7 @@
 #include "host/image_coder.h"
 #include "host/png_chunks.h"
 #include "host/schema.h"
+#include "host/stored_image.h"
 
 namespace wale {
 namespace {
@@ -56,15 +57,6 @@ void check_finite(const Image& image, const std::string& file) {
                      image.at(x, y)[c]);
 }
 
-// Integer files are sRGB encoded unless they say otherwise; alpha never is.
-void decode_srgb(Image& image, int alpha) {
-  for (size_t c = 0; c < image.channels.size(); ++c) {
-    if (int(c) == alpha) continue;
-    for (size_t i = c; i < image.pixels.size(); i += image.channels.size())
-      image.pixels[i] = static_cast<float>(srgb_to_linear(image.pixels[i]));
-  }
-}
-
 void write_png(const Image& image, const std::filesystem::path& file, double exposure, const std::string& view) {
   std::string png = display_png(image, exposure, view);
   if (const auto frame = image.attributes.find(kFrameAttribute); frame != image.attributes.end())
@@ -78,22 +70,35 @@ void write_exr(const Image& image, const std::filesystem::path& file) {
   out.commit();
 }
 
+std::string read_image_bytes(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) user_error("{}: no such image file", file.string());
+  return read_bytes(file);
+}
+
 }  // namespace
 
 Image read_image(const std::filesystem::path& file, bool finite) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) user_error("{}: no such image file", file.string());
-  return parse_image(read_bytes(file), file, finite);
+  return parse_image(read_image_bytes(file), file, finite);
 }
 
 Image parse_image(std::string_view bytes, const std::filesystem::path& path, bool finite) {
+  StoredImage stored = parse_stored_image(bytes, path);
+  if (stored.srgb) decode_srgb(stored);
+  if (finite) check_finite(stored.image, path.string());
+  return std::move(stored.image);
+}
+
+StoredImage read_stored_image(const std::filesystem::path& file) {
+  return parse_stored_image(read_image_bytes(file), file);
+}
+
+StoredImage parse_stored_image(std::string_view bytes, const std::filesystem::path& path) {
   const std::string file = path.string();
   const std::string format = format_of(bytes, path);
   if (format == "openexr") require_plausible_exr(bytes, file);
   if (format == "png") require_whole_png_chunks(bytes, file);
-  int alpha = -1;
-  bool srgb = false;
-  Image image;
+  StoredImage stored;
   const auto accept = [&](const ImageHeader& header) {
     const size_t channels = header.channels.size();
     const uint64_t values = uint64_t(std::max(0, header.width)) * std::max(0, header.height) * channels;
@@ -103,13 +108,21 @@ Image parse_image(std::string_view bytes, const std::filesystem::path& path, boo
     if (values > kBaseValues + kValuesPerByte * bytes.size())
       user_error("{}: {} x {} pixels do not fit into its {} bytes; is the file cut off?", file, header.width,
                  header.height, bytes.size());
-    alpha = header.alpha;
-    srgb = header.srgb;
+    stored.alpha = header.alpha;
+    stored.srgb = header.srgb;
+    stored.integer_bits = header.integer_bits;
   };
-  require_coded(image_coder().decode(bytes, format, file, accept, image), file + ": cannot be read as an image");
-  if (srgb) decode_srgb(image, alpha);
-  if (finite) check_finite(image, file);
-  return image;
+  require_coded(image_coder().decode(bytes, format, file, accept, stored.image), file + ": cannot be read as an image");
+  return stored;
+}
+
+void decode_srgb(StoredImage& stored) {
+  std::vector<float>& pixels = stored.image.pixels;
+  const size_t channels = stored.image.channels.size();
+  for (size_t c = 0; c < channels; ++c) {
+    if (int(c) == stored.alpha) continue;
+    for (size_t i = c; i < pixels.size(); i += channels) pixels[i] = static_cast<float>(srgb_to_linear(pixels[i]));
+  }
 }
 
 void write_image(const Image& image, const std::filesystem::path& file, double exposure, const std::string& view) {

@@ -1,0 +1,162 @@
+#include "host/fit/descriptor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/fit/resample.h"
+#include "host/fit/windows.h"
+
+namespace wale::fit {
+namespace {
+
+constexpr int kSmallestLevel = 4;  // pixels
+
+std::vector<Window> windows_of(const Picture& picture, const DescriptorOptions& options) {
+  if (options.alignment == Alignment::aligned) return {whole_picture(picture.width, picture.height)};
+  return windows(picture.width, picture.height, options.windows);
+}
+
+// Levels at which even a window has some pixels.
+std::vector<Picture> levels_of(const Picture& picture, const DescriptorOptions& options) {
+  const int windows = options.alignment == Alignment::aligned ? 1 : options.windows;
+  return pyramid(picture, options.levels, kSmallestLevel * windows);
+}
+
+std::string level_name(size_t level) { return level == 0 ? "full size" : "1/" + std::to_string(size_t(1) << level); }
+
+// Weights all equal, units from the values.
+Blocks finished(std::vector<Block> blocks, const Picture& picture) {
+  const double shade = brightness(picture);
+  for (Block& block : blocks) {
+    block.weight = 1.0 / double(blocks.size());
+    block.unit = unit_of(block.values, shade);
+  }
+  return blocks;
+}
+
+Block block(std::string name, std::vector<float> values) { return {std::move(name), 0, 0, std::move(values)}; }
+
+void append(std::vector<float>& values, const double* from, size_t count) {
+  for (size_t i = 0; i < count; ++i) values.push_back(float(from[i]));
+}
+
+void append_quantiles(const Picture& picture, const Window& window, std::vector<float>& values) {
+  constexpr int kQuantiles = 16;
+  std::vector<std::pair<float, double>> shades(size_t(window.width) * size_t(window.height));
+  for (size_t c = 0; c < 3; ++c) {
+    auto out = shades.begin();
+    for (int j = 0; j < window.height; ++j)
+      for (int i = 0; i < window.width; ++i) *out++ = {picture.at(window.x + i, window.y + j)[c], window.weight(i, j)};
+    std::sort(shades.begin(), shades.end());
+    double below = 0;
+    int q = 0;
+    for (const auto& [shade, weight] : shades) {
+      below += weight;
+      while (q < kQuantiles && below >= (q + 0.5) / kQuantiles) values.push_back(shade), ++q;
+    }
+    for (; q < kQuantiles; ++q) values.push_back(shades.back().first);  // weights that add up to a little less than 1
+  }
+}
+
+// Sum of weights, of sizes and of squares of differences to the next pixel across (step 1, 0) or down (0, 1).
+void append_edges(const Picture& picture, const Window& window, int step_x, int step_y, std::vector<float>& values) {
+  double weights = 0, sizes[3] = {}, squares[3] = {};
+  for (int j = 0; j + step_y < window.height; ++j)
+    for (int i = 0; i + step_x < window.width; ++i) {
+      const float* here = picture.at(window.x + i, window.y + j);
+      const float* next = picture.at(window.x + i + step_x, window.y + j + step_y);
+      const double weight = window.weight(i, j);
+      weights += weight;
+      for (int c = 0; c < 3; ++c) {
+        const double difference = double(next[c]) - double(here[c]);
+        sizes[c] += weight * std::abs(difference);
+        squares[c] += weight * difference * difference;
+      }
+    }
+  for (const double size : sizes) values.push_back(float(size / weights));
+  for (const double square : squares) values.push_back(float(std::sqrt(square / weights)));
+}
+
+void append_differences(const Picture& picture, int step_x, int step_y, std::vector<float>& values) {
+  for (int y = 0; y + step_y < picture.height; ++y)
+    for (int x = 0; x + step_x < picture.width; ++x)
+      for (int c = 0; c < 3; ++c) values.push_back(picture.at(x + step_x, y + step_y)[c] - picture.at(x, y)[c]);
+}
+
+}  // namespace
+
+double unit_of(const std::vector<float>& values, double picture_brightness) {
+  double sum = 0;
+  for (const float value : values) sum += std::abs(double(value));
+  return std::max(values.empty() ? 0 : sum / double(values.size()), kLeastUnit * picture_brightness);
+}
+
+Descriptor low_pass_descriptor(const DescriptorOptions& options) {
+  return [options](const Picture& picture) {
+    std::vector<Block> blocks;
+    if (options.alignment == Alignment::aligned) {
+      const std::vector<Picture> levels = levels_of(picture, options);
+      for (size_t i = 0; i < levels.size(); ++i) blocks.push_back(block(level_name(i), levels[i].pixels));
+    } else {
+      std::vector<float> values;
+      for (const Window& window : windows_of(picture, options))
+        append(values, color_moments(picture, window).mean.data(), 3);
+      blocks.push_back(block("windows", std::move(values)));
+    }
+    return finished(std::move(blocks), picture);
+  };
+}
+
+Descriptor color_descriptor(const DescriptorOptions& options) {
+  return [options](const Picture& picture) {
+    std::vector<float> means, roots, quantiles;
+    for (const Window& window : windows_of(picture, options)) {
+      const ColorMoments moments = color_moments(picture, window);
+      append(means, moments.mean.data(), 3);
+      append(roots, symmetric_root(moments.covariance).data(), 9);
+      append_quantiles(picture, window, quantiles);
+    }
+    return finished(
+        {block("mean", std::move(means)), block("spread", std::move(roots)), block("quantiles", std::move(quantiles))},
+        picture);
+  };
+}
+
+Descriptor gradient_descriptor(const DescriptorOptions& options) {
+  return [options](const Picture& picture) {
+    std::vector<Block> blocks;
+    for (const Picture& level : levels_of(picture, options)) {
+      std::vector<float> values;
+      if (options.alignment == Alignment::aligned) {
+        append_differences(level, 1, 0, values);
+        append_differences(level, 0, 1, values);
+      } else {
+        for (const Window& window : windows_of(level, options)) {
+          append_edges(level, window, 1, 0, values);
+          append_edges(level, window, 0, 1, values);
+        }
+      }
+      blocks.push_back(block(level_name(blocks.size()), std::move(values)));
+    }
+    blocks = finished(std::move(blocks), picture);
+    // One unit for all levels: a level that has hardly any edges of its own must not count by what aliases into it.
+    double unit = 0;
+    for (const Block& one : blocks) unit += one.unit * one.weight;
+    for (Block& one : blocks) one.unit = unit;
+    return blocks;
+  };
+}
+
+Descriptor spectrum_descriptor(const DescriptorOptions& options) {
+  return [options](const Picture& picture) {
+    const int count = options.alignment == Alignment::aligned ? 1 : options.windows;
+    std::vector<float> values;
+    for (const Window& window : windows(picture.width, picture.height, count)) {
+      const std::vector<double> bands = band_deviations(picture, window);
+      append(values, bands.data(), bands.size());
+    }
+    return finished({block("bands", std::move(values))}, picture);
+  };
+}
+
+}  // namespace wale::fit

@@ -1,0 +1,58 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/fit/picture.h"
+
+namespace wale::fit {
+
+/// Values of one kind that describe a picture.
+struct Block {
+  std::string name;
+  double weight;  ///< share of its descriptor; those of one picture add up to 1
+  /// What differences to this picture count by: the mean of the absolute values of this kind in it, but never less than
+  /// kLeastUnit of its brightness, so that nothing divides by a shade that the picture hardly has.
+  double unit;
+  std::vector<float> values;
+};
+using Blocks = std::vector<Block>;
+constexpr double kLeastUnit = 0.02;
+
+/// Whether two pictures are compared pixel by pixel, or only what they look like in windows.
+enum class Alignment { aligned, unaligned };
+
+/// How a picture is cut up for the descriptors.
+struct DescriptorOptions {
+  Alignment alignment = Alignment::aligned;
+  int windows = 3;  ///< unaligned: across and down (host/fit/windows.h)
+  int levels = 4;   ///< pictures of a pyramid, the first at full resolution, each next half as large
+};
+
+/// One term of a loss: a picture to blocks, whose names, weights and sizes follow from the picture's size alone.
+using Descriptor = std::function<Blocks(const Picture&)>;
+
+/// Linear light. Aligned: the pixels of a pyramid, one block a level, so that what lies a pixel aside still counts as
+/// near. Unaligned: mean colour of each window.
+Descriptor low_pass_descriptor(const DescriptorOptions& options);
+
+/// Distribution of colours in the picture (aligned) or each window (unaligned): mean, symmetric square root of the
+/// covariance, and 16 quantiles of each channel. Squared differences of the first two add up to the squared Wasserstein
+/// distance of two Gaussians whose covariances commute (D. C. Dowson and B. V. Landau, J. Multivariate Analysis 12,
+/// 1982); those of the third are the squared Wasserstein distance on the line.
+Descriptor color_descriptor(const DescriptorOptions& options);
+
+/// Edges, at every level of a pyramid: differences of neighbours across and down. Aligned: all of them. Unaligned: mean
+/// and root mean square of their sizes in each window. It stands in for the features of a network where there are no
+/// weights: they, too, are edges at first.
+Descriptor gradient_descriptor(const DescriptorOptions& options);
+
+/// Standard deviation of luminance in each window (of the picture, where aligned) by band of spatial frequency, half an
+/// octave each: the spectrum averaged over rings, without phases, thus wherever the stitches lie.
+Descriptor spectrum_descriptor(const DescriptorOptions& options);
+
+/// Values of a kind and the picture's brightness to Block::unit.
+double unit_of(const std::vector<float>& values, double picture_brightness);
+
+}  // namespace wale::fit

@@ -1,0 +1,207 @@
+// Losses: 0 at the target, greater the farther away, and sums of the residuals' squares.
+#include "host/fit/loss.h"
+#include "tests/host/fit_pictures.h"
+#include "tests/temporary_folder.h"
+
+namespace wale::fit {
+namespace {
+
+// Two layers that can be worked out by hand: what is brighter than 0.3, and half-size means with their negatives.
+class ToyNetwork : public FeatureNetwork {
+ public:
+  const std::vector<std::string>& layers() const override { return layers_; }
+  std::vector<FeatureMap> features(const Picture& display, const std::vector<std::string>& wanted) const override {
+    std::vector<FeatureMap> maps;
+    for (const std::string& layer : wanted) {
+      const int step = layer == "relu1_2" ? 1 : 2, channels = layer == "relu1_2" ? 3 : 2;
+      FeatureMap map{channels, display.width / step, display.height / step, {}};
+      for (int c = 0; c < channels; ++c)
+        for (int y = 0; y < map.height; ++y)
+          for (int x = 0; x < map.width; ++x) {
+            const float value = display.at(step * x, step * y)[c];
+            map.values.push_back(channels == 3 ? std::max(0.0f, value - 0.3f) : c == 0 ? value : 1 - value);
+          }
+      maps.push_back(std::move(map));
+    }
+    return maps;
+  }
+
+ private:
+  std::vector<std::string> layers_{"relu1_2", "relu2_2"};
+};
+
+PicturePair pair_of(double shift = 0, double shade = 0.4, double contrast = 0.5) {
+  return {stitches(48, 40, shift, shade, contrast), stitches(48, 40, shift, 0.05 * shade, 0.6 * contrast)};
+}
+
+// Every term in both modes.
+std::vector<LossOptions> all_options() {
+  std::vector<LossOptions> all;
+  for (const Alignment alignment : {Alignment::aligned, Alignment::unaligned})
+    for (int term = 0; term <= 5; ++term) {
+      LossOptions options;
+      options.descriptors.alignment = alignment;
+      if (term < 5) {
+        TermWeights weights;
+        double* const one[] = {&weights.low_pass, &weights.color, &weights.gradient, &weights.spectrum,
+                               &weights.feature};
+        *one[term] = 1;
+        options.weights = weights;
+      }
+      all.push_back(options);
+    }
+  return all;
+}
+
+Loss loss_to(const PicturePair& target, const LossOptions& options) {
+  return Loss(target, options, std::make_shared<ToyNetwork>());
+}
+
+std::string term_of(const Loss& loss, const PicturePair& pair) { return loss.contributions(pair).front().name; }
+
+TEST(FitLoss, ZeroAtTheTargetAndAboveElsewhere) {
+  for (const LossOptions& options : all_options()) {
+    const Loss loss = loss_to(pair_of(), options);
+    EXPECT_EQ(loss.loss(pair_of()), 0);
+    EXPECT_GT(loss.loss(pair_of(0, 0.44)), 0) << term_of(loss, pair_of());
+  }
+}
+
+TEST(FitLoss, ResidualsSquaredAddUpToTheLoss) {
+  for (const LossOptions& options : all_options()) {
+    const Loss loss = loss_to(pair_of(), options);
+    const PicturePair other = pair_of(1.3, 0.5, 0.3);
+    double squares = 0, parts = 0;
+    for (const double residual : loss.residuals(other)) squares += residual * residual;
+    for (const auto& part : loss.contributions(other)) parts += part.value;
+    EXPECT_NEAR(squares / loss.loss(other), 1, 1e-12);
+    EXPECT_NEAR(parts / loss.loss(other), 1, 1e-12);
+    EXPECT_EQ(loss.residuals(other).size(), loss.residuals(pair_of()).size());
+  }
+}
+
+TEST(FitLoss, FartherPicturesLoseMore) {
+  for (const LossOptions& options : all_options()) {
+    const Loss loss = loss_to(pair_of(), options);
+    const std::string term = term_of(loss, pair_of());
+    double last = 0;
+    for (const double shade : {0.42, 0.46, 0.55, 0.7}) {
+      const double value = loss.loss(pair_of(0, shade));
+      EXPECT_GT(value, last) << term << " shade " << shade;
+      last = value;
+    }
+    // A mean does not see contrast.
+    if (!options.weights || options.weights->low_pass == 0 || options.descriptors.alignment == Alignment::aligned) {
+      last = 0;
+      for (const double contrast : {0.45, 0.35, 0.2, 0.0}) {
+        const double value = loss.loss(pair_of(0, 0.4, contrast));
+        EXPECT_GT(value, last) << term << " contrast " << contrast;
+        last = value;
+      }
+    }
+  }
+}
+
+// Of each term alone, 10 % more light is a relative difference of 0.1: of the mean of x^2 over the mean of |x| squared,
+// at least 0.01.
+TEST(FitLoss, OnlyTheRelativeDifferenceCounts) {
+  LossOptions options;
+  options.weights = TermWeights{.low_pass = 1};
+  const PicturePair flat{painted(40, 40, [](int, int, int) { return 0.5; }),
+                         painted(40, 40, [](int, int, int) { return 0.001; })};
+  const auto scaled = [&](double front, double back) {
+    return PicturePair{painted(40, 40, [&](int, int, int) { return 0.5 * front; }),
+                       painted(40, 40, [&](int, int, int) { return 0.001 * back; })};
+  };
+  const Loss loss(flat, options);
+  EXPECT_NEAR(loss.loss(scaled(1.1, 1)), 0.005, 1e-6);
+  EXPECT_NEAR(loss.loss(scaled(1, 1.1)), 0.005, 1e-6);
+  options.back = 0;
+  EXPECT_NEAR(Loss(flat, options).loss(scaled(1.1, 7)), 0.01, 1e-6);
+}
+
+TEST(FitLoss, KnownValuesOfTheFeatures) {
+  LossOptions options;
+  options.weights = TermWeights{.feature = 1};
+  options.layers = {{"relu2_2", 1}};
+  options.descriptors.alignment = Alignment::unaligned;
+  const auto flat = [](double shade) { return painted(40, 40, [&](int, int, int) { return shade; }); };
+  const auto network = std::make_shared<ToyNetwork>();
+  const Blocks blocks = feature_descriptor(network, options.layers, 1, options.descriptors)(flat(1));
+  ASSERT_EQ(blocks.size(), 1u);
+  ASSERT_EQ(blocks[0].values.size(), 9u * 3);  // nine windows, halves of 2 x 2
+  EXPECT_NEAR(blocks[0].values[0], 1, 1e-5);   // channels 1 and 0
+  EXPECT_NEAR(blocks[0].values[1], 0, 1e-5);
+  const float v = float((1.055 * std::pow(0.2, 1 / 2.4) - 0.055));
+  const Blocks dim = feature_descriptor(network, options.layers, 1, options.descriptors)(flat(0.2));
+  EXPECT_NEAR(dim[0].values[3], v * v, 1e-5);
+  EXPECT_NEAR(dim[0].values[4], std::sqrt(2.0) * v * (1 - v), 1e-5);
+  EXPECT_NEAR(dim[0].values[5], (1 - v) * (1 - v), 1e-5);
+  EXPECT_NEAR(display_exposure(flat(0.2)), 4, 1e-6);
+}
+
+// Moved by half a stitch, a cloth looks the same: statistics see it far less than pixels do.
+TEST(FitLoss, UnalignedForgivesAShift) {
+  LossOptions aligned, unaligned;
+  unaligned.descriptors.alignment = Alignment::unaligned;
+  const PicturePair target{stitches(120, 120), stitches(120, 120, 0, 0.02)};
+  const PicturePair moved{stitches(120, 120, 4.5), stitches(120, 120, 4.5, 0.02)};
+  const PicturePair darker{stitches(120, 120, 0, 0.36), stitches(120, 120, 0, 0.018)};
+  const Loss pixels(target, aligned), statistics(target, unaligned);
+  EXPECT_GT(pixels.loss(moved), 3 * pixels.loss(darker));
+  EXPECT_LT(statistics.loss(moved), 0.1 * statistics.loss(darker));
+}
+
+// Noise of known variance on a flat picture: each value of the first level has it, of the next a quarter, ...
+TEST(FitLoss, TheNoiseFloorIsTheVarianceOfTheResiduals) {
+  LossOptions options;
+  options.weights = TermWeights{.low_pass = 1};
+  options.descriptors.levels = 2;
+  const auto flat = [](int, int, int) { return 0.5; };
+  const Loss loss({painted(64, 64, flat), painted(64, 64, flat)}, options);
+  std::vector<PicturePair> noisy;
+  for (unsigned seed = 0; seed < 8; ++seed)
+    noisy.push_back({random_picture(64, 64, 2 * seed), random_picture(64, 64, 2 * seed + 1)});
+  const double variance = 1.0 / 12 / 0.25;  // of values in [0,1], over the unit squared
+  EXPECT_NEAR(loss.noise_floor(noisy) / (0.5 * variance * (1 + 0.25)), 1, 0.02);
+  // The floor is what such renders lose when their mean is the target.
+  double mean = 0;
+  for (const PicturePair& pair : noisy) mean += loss.loss(pair) / 8;
+  EXPECT_NEAR(loss.noise_floor(noisy) / mean, 1, 0.02);
+  const std::vector<PicturePair> same(3, noisy[0]);
+  EXPECT_EQ(loss.noise_floor(same), 0);
+}
+
+TEST(FitLoss, WhatCannotBeIsRefusedInOneLine) {
+  const auto line = [](const auto& change, bool network = true, PicturePair target = pair_of()) {
+    LossOptions options;
+    change(options);
+    return user_message([&] {
+      Loss(target, options, network ? std::make_shared<ToyNetwork>() : std::shared_ptr<const FeatureNetwork>());
+    });
+  };
+  EXPECT_EQ(line([](LossOptions& o) { o.front = -1; }), "loss: front: -1 is no weight; valid: 0 and above");
+  EXPECT_EQ(line([](LossOptions& o) { o.front = o.back = 0; }),
+            "loss: front and back are both 0; give one of them a weight");
+  EXPECT_EQ(line([](LossOptions& o) { o.weights = TermWeights{}; }),
+            "loss: all weights are 0; give one of low_pass, color, gradient, spectrum, feature");
+  EXPECT_EQ(line([](LossOptions& o) { o.weights = TermWeights{.color = NAN}; }),
+            "loss: color: nan is no weight; valid: 0 and above");
+  EXPECT_EQ(line([](LossOptions& o) { o.weights = TermWeights{.feature = 1}; }, false),
+            "loss: feature: needs the weights of a network; gradient needs none");
+  EXPECT_EQ(line([](LossOptions& o) {
+              o.layers = {{"relu1_3", 1}};
+            }),
+            "loss: layer \"relu1_3\": the network has none of this name; did you mean \"relu1_2\"?");
+  EXPECT_EQ(line([](LossOptions& o) { o.layers = {{"relu1_2", 0}}; }), "loss: the weights of all layers are 0");
+  EXPECT_EQ(line([](LossOptions& o) { o.descriptors.windows = 0; }), "loss: windows: 0; valid: 1 to 64");
+  EXPECT_EQ(line([](LossOptions& o) { o.descriptors.levels = 0; }), "loss: levels: 0; valid: 1 to 16");
+  EXPECT_EQ(line([](LossOptions& o) { o.descriptors.windows = 20; }),
+            "loss: 48 x 40 pixels are too few for 20 windows; at least 42 x 42");
+  EXPECT_EQ(line([](LossOptions&) {}, true, {stitches(48, 40), stitches(40, 48)}),
+            "loss: the front picture has 48 x 40 pixels, the back one 40 x 48; both need one size");
+  EXPECT_EQ(line([](LossOptions&) {}, true, {stitches(48, 40), Picture(48, 40)}), "loss: the back picture is black");
+}
+
+}  // namespace
+}  // namespace wale::fit
