@@ -12,6 +12,8 @@
 #include "host/cost/command.h"
 #include "host/device.h"
 #include "host/device_fault.h"
+#include "host/fit/command.h"
+#include "host/fit/command_measure.h"
 #include "host/serve/command_serve.h"
 #include "host/suggest.h"
 
@@ -94,6 +96,58 @@ void add_knit_options(CLI::App& command, wale::KnitArgs& args) {
   command.add_option("--period", args.period, "WIDTHxHEIGHT of the tile in mm, held; free unless given");
   command.add_option("--json", args.json, "write the report as JSON (- for the terminal)");
   command.add_flag("--quiet", args.quiet, "no progress");
+}
+
+void add_fit_options(CLI::App& command, wale::FitArgs& args) {
+  command.add_option("--front", args.front, "photograph of the cloth lit from the camera's side");
+  command.add_option("--back", args.back, "the same, lit from behind");
+  command.add_option("-o,--output", args.output, "material file to write (.json)")->required();
+  command.add_option("--material", args.material, "ply material to fit; the scene's only one unless given");
+  command.add_option("--parameters", args.parameters,
+                     "what to fit, with bounds if others are wanted: transmit,reflect,roughness=5..30; "
+                     "default: transmit, reflect, roughness, optical_radius, fibre_twist");
+  command.add_option("--resolution", args.resolution, "size of the renders, of the photographs'; 0.1 unless given")
+      ->check(finite_number(false));
+  command.add_option("--spp", args.samples, "samples per pixel; 32 unless given")->check(CLI::Range(1, 1 << 16));
+  command.add_option("--final-spp", args.final_samples, "of a last descent from the best place; 256 unless given")
+      ->check(CLI::Range(1, 1 << 16));
+  command.add_option("--starts", args.starts, "places to descend from; 3 unless given")->check(CLI::Range(1, 64));
+  command.add_option("--evaluations", args.evaluations, "pairs of renders for one start, at most; 150 unless given")
+      ->check(CLI::Range(1, 100000));
+  command.add_option("--method", args.method, "paths (derivatives along the paths), differences, or bobyqa")
+      ->check(CLI::IsMember({"paths", "differences", "bobyqa"}));
+  command.add_option("--minutes", args.minutes, "end after that time with the best so far")->check(finite_number(false));
+  command.add_flag("--redo", args.redo, "begin anew, whatever an earlier run left");
+  command.add_option("--report", args.report, "page to write (.html): pictures, loss, parameters");
+  command.add_option("--progress", args.progress, "picture to write while it fits (.png)");
+  command.add_option("--transfer", args.transfer, "how the photographs' numbers follow from light; the file says it else")
+      ->check(CLI::IsMember({"srgb", "linear"}));
+  command.add_option("--grey", args.grey, "x,y,width,height of a grey reference in the front photograph, pixels");
+  command.add_option("--grey-reflectance", args.grey_reflectance, "of it; 0.18 unless given");
+  command.add_option("--gains", args.gains, "red,green,blue: factors on linear light, where there is no reference");
+  command.add_option("--crop", args.crop, "x,y,width,height of the part with the cloth, pixels");
+  command.add_option("--corners", args.corners, "x,y of its four corners instead, clockwise from the top left");
+  command.add_option("--front-exposure", args.front_exposure, "time x ISO / f-number^2 of the front photograph")
+      ->check(finite_number(false));
+  command.add_option("--back-exposure", args.back_exposure, "the same of the back one")->check(finite_number(false));
+  command.add_flag("--unaligned", args.unaligned, "photographs show such cloth, not these very stitches");
+  command.add_option("--weights", args.weights, "VGG16 weights (.npz or .onnx) for a loss by features");
+  command.add_option("--layers", args.layers, "layers of it and their weights: relu1_2=1,relu2_2=0.5");
+  command.add_option("--loss", args.terms, "terms and weights: low-pass=1,color=1,gradient=0.1,spectrum=1,feature=0.1");
+}
+
+void add_measure_options(CLI::App& command, wale::MeasureArgs& args) {
+  command.add_option("--fabric", args.fabric, "name or number; the scene's only one unless given");
+  command.add_option("--scale", args.scale, "pixels per mm: lengths are in pixels; else in mm")->check(finite_number(false));
+  const auto length = [&](const char* name, std::optional<double>& to, const char* doc) {
+    command.add_option(name, to, doc)->check(finite_number(false));
+  };
+  length("--wale", args.wale, "distance of neighbouring wales");
+  length("--course", args.course, "distance of neighbouring courses");
+  length("--yarn", args.yarn, "diameter of the yarn");
+  length("--ply", args.ply, "diameter of a ply");
+  command.add_option("--angle", args.angle, "of the plies to the yarn's axis, degrees; negative: left-handed");
+  command.add_option("--plies", args.plies, "plies in the yarn")->check(CLI::Range(1, 8));
 }
 
 // What CLI11 could not place, with the nearest valid word.
@@ -180,6 +234,18 @@ int run(int argc, char** argv) {
   c->add_option("--host", serve.host, "address to listen on; only this machine unless given");
   c->add_option("--size", serve.size, "WIDTHxHEIGHT that the picture on the page fits into, 512x512 unless given");
   c->callback([&] { status = wale::run_serve(serve, loaders); });
+  wale::FitArgs fit;
+  fit.command = cost.command;
+  c = app.add_subcommand("fit", "fit a material to photographs that are lit from the front and from behind");
+  add_scene_options(*c, fit);
+  add_device_options(*c, fit, "its number");
+  add_fit_options(*c, fit);
+  c->callback([&] { status = wale::run_fit(fit, loaders); });
+  wale::MeasureArgs measure;
+  c = app.add_subcommand("measure", "turn lengths and angles measured on a picture into a scene's gauge, yarn and plies");
+  add_scene_options(*c, measure);
+  add_measure_options(*c, measure);
+  c->callback([&] { status = wale::run_measure(measure, loaders); });
   wale::KnitArgs knit;
   c = app.add_subcommand("knit", "relax a stitch chart into a tile of yarn");
   add_knit_options(*c, knit);

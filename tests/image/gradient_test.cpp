@@ -8,7 +8,7 @@
 namespace wale::test {
 namespace {
 
-constexpr int kSide = 12, kSamples = 512, kSeeds = 8;
+constexpr int kSide = 12, kSamples = 128, kSeeds = 8;
 
 Scene lit_cloth() {
   Scene scene = empty_scene(0.01, kSide);

@@ -49,7 +49,7 @@ double log_longitudinal(double si, double so, double v) {
   const double ci = std::sqrt(1 - si * si), co = std::sqrt(1 - so * so), x = ci * co / v;
   // ln(exp(-x) I0(x)); beyond what I0 holds by its asymptotic series (Abramowitz & Stegun 9.7.1).
   double log_i0e = x < 600 ? std::log(std::cyl_bessel_i(0.0, x)) - x
-                           : std::log1p(1 / (8 * x) + 9 / (128 * x * x)) - 0.5 * std::log(2 * kPi * x);
+                           : std::log1p(1 / (8 * x) + 9 / (128 * x * x)) - 0.5 * std::log(2 * M_PI * x);
   return -0.5 * ((ci - co) * (ci - co) + (si + so) * (si + so)) / v + log_i0e - std::log(v * -std::expm1(-2 / v));
 }
 

@@ -1,0 +1,133 @@
+// Materials that nobody knows, found again from pictures of them.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <random>
+
+#include "host/fit/fit.h"
+#include "host/fit/loss.h"
+#include "tests/image/picture.h"
+#include "tests/image/program.h"
+
+namespace wale::test {
+namespace {
+using namespace fit;
+
+bool long_tests() {
+  const char* given = std::getenv("WALE_LONG_TESTS");
+  return given && std::string(given) == "1";
+}
+
+struct Hidden {
+  const char* name;
+  const char* preset;
+  Rgb transmit, reflect;
+  double roughness, optical_radius, fibre_twist;  ///< degrees, -, degrees
+};
+
+const Hidden kHidden[] = {
+    {"cream wool", "wool", {0.90, 0.84, 0.70}, {0.85, 0.78, 0.62}, 7, 2.3, 18},
+    {"dark blue cotton", "cotton", {0.18, 0.28, 0.60}, {0.12, 0.20, 0.48}, 12, 3.2, 22},
+    {"red silk", "silk", {0.85, 0.25, 0.15}, {0.70, 0.16, 0.12}, 3.5, 4.0, 6},
+    {"green mohair", "mohair", {0.45, 0.75, 0.40}, {0.40, 0.66, 0.42}, 5, 1.5, 12},
+};
+
+FitTarget target_of(const Scene& scene) {
+  FitTarget target;
+  target.material = size_t(scene.fabrics[0].material);
+  target.fabrics = {0};
+  return target;
+}
+
+// Photographs of a hidden material: another seed, more samples, and a camera's noise.
+PicturePair photographs(LitPair& camera, const Scene& scene, int samples, uint32_t seed) {
+  PicturePair pair = camera.render(scene, samples, seed);
+  std::mt19937 random(seed);
+  std::normal_distribution<float> noise(0, 0.01f);
+  for (fit::Picture* side : {&pair.front, &pair.back}) {
+    const auto mean = float(brightness(*side));
+    for (float& v : side->pixels) v = std::max(0.0f, v + noise(random) * std::sqrt(std::max(v * mean, 0.0f)));
+  }
+  return pair;
+}
+
+struct Answer {
+  FitResult result;
+  FitJournal journal;
+  double floor = 0;  ///< loss of the hidden material itself: what the photographs have of noise
+  std::vector<double> hidden;
+};
+
+Answer answer(const Hidden& hidden, int side, int samples, int final_samples, FitMethod method, int starts) {
+  Scene scene = read_scene(std::string(WALE_SOURCE_DIR) + "/scenes/photo.json");
+  scene.film.width = scene.film.height = side;
+  const FitTarget target = target_of(scene);
+  FitSettings settings;
+  settings.parameters = fit_parameters("");
+  settings.target = target;
+  settings.method = method;
+  settings.samples = samples;
+  settings.final_samples = final_samples;
+  settings.starts = starts;
+  settings.evaluations = 250;
+  scene.materials[target.material].yarn.preset = hidden.preset;
+
+  Scene truth = scene;
+  PlyAppearance& yarn = truth.materials[target.material].yarn;
+  constexpr double kDegree = 3.14159265358979 / 180;
+  yarn.forward = hidden.transmit, yarn.back = hidden.reflect;
+  yarn.roughness = hidden.roughness * kDegree;
+  yarn.optical_radius = hidden.optical_radius;
+  yarn.fibre_twist = hidden.fibre_twist * kDegree;
+
+  const Loaders loaders{[](const auto& file) { return read_mesh(file); }, {}};
+  LitPair renderer(device(), loaders, {});
+  const Loss loss(photographs(renderer, truth, 512, 900), LossOptions{});
+  // A far start: grey, dull and sparse, whatever the cloth.
+  PlyAppearance& start = scene.materials[target.material].yarn;
+  start.forward = start.back = Rgb{0.5, 0.5, 0.5};
+  start.roughness = 20 * kDegree;
+  start.optical_radius = 0.8;
+  start.fibre_twist = 0;
+  Fit fit(scene, renderer, [&](const PicturePair& pair) { return loss.residuals(pair); }, settings);
+  Answer out;
+  out.result = *fit.run(out.journal, [] { return false; }, {});
+  Residuals at;
+  for (const uint32_t seed : {500u, 501u})
+    at.replicates.push_back({loss.residuals(renderer.render(truth, final_samples, seed))});
+  out.floor = at.loss();
+  for (const FitParameter& p : settings.parameters) out.hidden.push_back(p.group->get(truth, target, p.k));
+  return out;
+}
+
+void expect_found(const Answer& a, const std::string& name) {
+  const std::vector<FitParameter> parameters = fit_parameters("");
+  std::string text = fmt::format("{}: loss {:.4g}, floor {:.4g}, {} pairs, {:.0f} s", name, a.result.best.loss, a.floor,
+                                 a.journal.steps.size(), a.journal.seconds);
+  for (size_t k = 0; k < parameters.size(); ++k) {
+    const FittedParameter& p = a.result.parameters[k];
+    text += fmt::format("; {} {:.4g} ({:.4g}, {:.2g})", parameters[k].name(), p.value, a.hidden[k],
+                        p.high ? (*p.high - *p.low) / 4 : -1.0);
+    const std::string group = parameters[k].group->name;
+    if (group == "transmit" || group == "reflect") {
+      EXPECT_NEAR(p.value, a.hidden[k], 0.02) << name << ": " << parameters[k].name();
+    } else if (group == "roughness" || group == "optical_radius") {
+      EXPECT_NEAR(p.value / a.hidden[k], 1, 0.1) << name << ": " << parameters[k].name();
+    }
+    EXPECT_TRUE(p.determined) << name << ": " << parameters[k].name();
+  }
+  EXPECT_TRUE(a.result.best.converged);
+  EXPECT_LT(a.result.best.loss, 1.05 * a.floor) << name;
+  fmt::print("{}\n", text);
+}
+
+TEST(FitKnownAnswer, OneMaterial) { expect_found(answer(kHidden[0], 48, 16, 256, FitMethod::paths, 1), kHidden[0].name); }
+
+TEST(FitKnownAnswer, FourMaterials) {
+  if (!long_tests()) GTEST_SKIP() << "some minutes: WALE_LONG_TESTS=1";
+  for (const Hidden& hidden : kHidden) expect_found(answer(hidden, 102, 32, 256, FitMethod::paths, 3), hidden.name);
+}
+
+}  // namespace
+}  // namespace wale::test
