@@ -43,29 +43,27 @@ std::string percent(double share) {
 // Counts pixels, and in which of 8 x 8 parts of the picture most of them are.
 class Clipped {
  public:
-  Clipped(const StoredImage& stored, double level) : stored_(stored), level_(level) {}
+  Clipped(const Image& image, double level) : image_(image), channels_(color_channels(image)), level_(level) {}
 
   void look_at(int x, int y) {
-    const Image& image = stored_.image;
     ++seen_;
-    for (size_t c = 0; c < image.channels.size(); ++c)
-      if (int(c) != stored_.alpha && double(image.at(x, y)[c]) >= level_) {
-        ++clipped_;
-        ++parts_[size_t(int64_t(y) * kParts / image.height) * kParts + size_t(int64_t(x) * kParts / image.width)];
-        return;
-      }
+    const float* pixel = image_.at(x, y);
+    if (std::none_of(channels_.begin(), channels_.end(), [&](size_t c) { return double(pixel[c]) >= level_; })) return;
+    ++clipped_;
+    ++parts_[size_t(y) * kParts / size_t(image_.height) * kParts + size_t(x) * kParts / size_t(image_.width)];
   }
   double share() const { return seen_ ? double(clipped_) / double(seen_) : 0; }
   std::string text() const {
     const size_t most = size_t(std::max_element(parts_.begin(), parts_.end()) - parts_.begin());
     const auto centre = [](size_t part, int size) { return int((double(part) + 0.5) * size / kParts); };
     return fmt::format("{} of the cloth's pixels are clipped, most around ({}, {})", percent(share()),
-                       centre(most % kParts, stored_.image.width), centre(most / kParts, stored_.image.height));
+                       centre(most % kParts, image_.width), centre(most / kParts, image_.height));
   }
 
  private:
   static constexpr size_t kParts = 8;
-  const StoredImage& stored_;
+  const Image& image_;
+  std::array<size_t, 3> channels_;
   double level_;
   size_t seen_ = 0, clipped_ = 0;
   std::array<size_t, kParts * kParts> parts_{};
@@ -111,12 +109,12 @@ void require_unclipped(const StoredImage& stored, const PhotographOptions& optio
   const double level = clip_level(stored, options);
   if (options.grey) {
     const Rectangle& r = *options.grey;
-    Clipped grey(stored, level);
+    Clipped grey(stored.image, level);
     for (int y = r.y; y < r.y + r.height; ++y)
       for (int x = r.x; x < r.x + r.width; ++x) grey.look_at(x, y);
     if (grey.share() > 0) user_error("{}: grey: {} of it is clipped; expose less", name, percent(grey.share()));
   }
-  Clipped cloth(stored, level);
+  Clipped cloth(stored.image, level);
   for_cloth(stored.image, options, [&](int x, int y) { cloth.look_at(x, y); });
   if (cloth.share() > kClippedShare) user_error("{}: {}; expose less", name, cloth.text());
   if (cloth.share() > 0) warnings.push_back(fmt::format("{}: {}", name, cloth.text()));
