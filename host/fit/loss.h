@@ -37,7 +37,7 @@ struct LossOptions {
 class Loss {
  public:
   /// Throws user errors: a picture without pixels, of two sizes or black, a weight below 0 or all of them 0, features
-  /// without a network, a layer that it has not.
+  /// without a network, a layer that it has not, features that overflow.
   Loss(const PicturePair& target, const LossOptions& options, std::shared_ptr<const FeatureNetwork> network = nullptr);
 
   double loss(const PicturePair& pair) const;
