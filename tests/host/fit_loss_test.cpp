@@ -102,8 +102,17 @@ TEST(FitLoss, FartherPicturesLoseMore) {
   }
 }
 
-// Of each term alone, 10 % more light is a relative difference of 0.1: of the mean of x^2 over the mean of |x| squared,
-// at least 0.01.
+// A black render has the relative difference 1 in every value.
+TEST(FitLoss, BlackLosesTheSumOfTheWeights) {
+  for (const Alignment alignment : {Alignment::aligned, Alignment::unaligned}) {
+    LossOptions options;
+    options.descriptors.alignment = alignment;
+    options.weights = TermWeights{.low_pass = 1, .color = 0.5, .gradient = 0.3, .spectrum = 0.2};
+    EXPECT_NEAR(Loss(pair_of(), options).loss({Picture(48, 40), Picture(48, 40)}), 2, 1e-6);
+  }
+}
+
+// 10 % more light is a squared relative difference of 0.01.
 TEST(FitLoss, OnlyTheRelativeDifferenceCounts) {
   LossOptions options;
   options.weights = TermWeights{.low_pass = 1};
