@@ -120,9 +120,26 @@ void require_unclipped(const StoredImage& stored, const PhotographOptions& optio
   if (cloth.share() > 0) warnings.push_back(fmt::format("{}: {}", name, cloth.text()));
 }
 
-void require_light(const Picture& picture, const std::string& name) {
-  constexpr double kBlack = 1e-5;
-  if (!(brightness(picture) > kBlack)) user_error("{}: it is black: its mean is {:.1e}", name, brightness(picture));
+void require_light(const Picture& picture, int integer_bits, const std::string& name,
+                   std::vector<std::string>& warnings) {
+  constexpr double kBlack = 1e-5, kDim = 1e-2;
+  const double mean = brightness(picture);
+  if (!(mean > kBlack)) user_error("{}: it is black: its mean is {:.1e}", name, mean);
+  if (integer_bits == 8 && mean < kDim)
+    warnings.push_back(fmt::format(
+        "{}: its mean is {:.2g} of full scale, where 8 bits have coarse steps; expose more, or save 16 bits", name,
+        mean));
+}
+
+void warn_of_size(const PhotographOptions& options, int width, int height, const std::string& name,
+                  std::vector<std::string>& warnings) {
+  if (!options.size) return;
+  const ivec2 shown = options.corners ? size_of(*options.corners)
+                      : options.crop  ? ivec2(options.crop->width, options.crop->height)
+                                      : ivec2(width, height);
+  if (options.size->x > shown.x || options.size->y > shown.y)
+    warnings.push_back(fmt::format("{}: size {} x {} is more than the {} x {} pixels of its cloth", name,
+                                   options.size->x, options.size->y, shown.x, shown.y));
 }
 
 }  // namespace wale::fit

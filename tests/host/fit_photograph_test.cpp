@@ -211,6 +211,27 @@ TEST_F(FitPhotograph, ACardAndTwoExposures) {
   EXPECT_NEAR(pair.back.at(1, 1)[0], 0.18 * 3000 / 18000, kSixteenBits);
 }
 
+TEST_F(FitPhotograph, DarkInEightBitsAndEnlargedAreWarnings) {
+  const auto warnings_of = [&](int bits, int value, const PhotographOptions& options = {}) {
+    return read_photograph(folder_.write("w.ppm", ppm(70, 70, bits, [=](int, int, int) { return value; })), options)
+        .warnings;
+  };
+  const auto dark = warnings_of(8, 24);
+  ASSERT_EQ(dark.size(), 1u);
+  EXPECT_NE(dark[0].find("its mean is 0.0091 of full scale, where 8 bits have coarse steps"), std::string::npos)
+      << dark[0];
+  EXPECT_TRUE(warnings_of(8, 27).empty());
+  EXPECT_TRUE(warnings_of(16, 24 * 257).empty());
+  EXPECT_TRUE(warnings_of(8, 99, {.size = ivec2(70, 70)}).empty());
+  const Corners corners{dvec2(0, 0), dvec2(66, 0), dvec2(66, 70), dvec2(0, 70)};
+  for (const PhotographOptions& options : {PhotographOptions{.crop = Rectangle{0, 0, 66, 70}, .size = ivec2(67, 64)},
+                                           PhotographOptions{.corners = corners, .size = ivec2(67, 64)}}) {
+    const auto larger = warnings_of(8, 99, options);
+    ASSERT_EQ(larger.size(), 1u);
+    EXPECT_NE(larger[0].find("size 67 x 64 is more than the 66 x 70 pixels of its cloth"), std::string::npos);
+  }
+}
+
 // The back is exposed eight times as long; the card was in the front's picture.
 TEST_F(FitPhotograph, TheBackTakesTheFrontsGains) {
   PairOptions options;
