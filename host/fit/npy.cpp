@@ -120,8 +120,6 @@ std::vector<float> row_major(const std::vector<float>& values, const std::vector
 
 }  // namespace
 
-size_t NpyArray::count() const { return values.size(); }
-
 std::string shape_text(const std::vector<size_t>& shape) { return fmt::format("{}", fmt::join(shape, " x ")); }
 
 NpyArray parse_npy(std::string_view bytes, const std::string& name) {

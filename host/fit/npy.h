@@ -9,7 +9,6 @@ namespace wale::fit {
 struct NpyArray {
   std::vector<size_t> shape;
   std::vector<float> values;
-  size_t count() const;
 };
 
 /// Reads one of little-endian floats of 4 or 8 bytes, in C or Fortran order (NumPy Enhancement Proposal 1; versions 1
