@@ -86,9 +86,10 @@ void append_differences(const Picture& picture, int step_x, int step_y, std::vec
 }  // namespace
 
 double unit_of(const std::vector<float>& values, double picture_brightness) {
-  double sum = 0;
-  for (const float value : values) sum += std::abs(double(value));
-  return std::max(values.empty() ? 0 : sum / double(values.size()), kLeastUnit * picture_brightness);
+  double squares = 0;
+  for (const float value : values) squares += double(value) * double(value);
+  const double mean = values.empty() ? 0 : squares / double(values.size());
+  return std::max(std::sqrt(mean), kLeastUnit * picture_brightness);
 }
 
 Descriptor low_pass_descriptor(const DescriptorOptions& options) {
@@ -140,9 +141,9 @@ Descriptor gradient_descriptor(const DescriptorOptions& options) {
     }
     blocks = finished(std::move(blocks), picture);
     // One unit for all levels: a level that has hardly any edges of its own must not count by what aliases into it.
-    double unit = 0;
-    for (const Block& one : blocks) unit += one.unit * one.weight;
-    for (Block& one : blocks) one.unit = unit;
+    double squares = 0;
+    for (const Block& one : blocks) squares += one.weight * one.unit * one.unit;
+    for (Block& one : blocks) one.unit = std::sqrt(squares);
     return blocks;
   };
 }

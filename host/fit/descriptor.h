@@ -12,8 +12,8 @@ namespace wale::fit {
 struct Block {
   std::string name;
   double weight;  ///< share of its descriptor; those of one picture add up to 1
-  /// What differences to this picture count by: the mean of the absolute values of this kind in it, but never less than
-  /// kLeastUnit of its brightness, so that nothing divides by a shade that the picture hardly has.
+  /// What differences to this picture count by: the root mean square of the values of this kind in it, but never less
+  /// than kLeastUnit of its brightness, so that nothing divides by a shade that the picture hardly has.
   double unit;
   std::vector<float> values;
 };

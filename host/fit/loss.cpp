@@ -96,6 +96,10 @@ void Loss::add_terms(const Picture PicturePair::*picture, const std::string& nam
     if (weight == 0) return;
     Descriptor describe = make();
     Blocks blocks = describe(target);
+    for (const Block& block : blocks)
+      if (!std::all_of(block.values.begin(), block.values.end(), [](float value) { return std::isfinite(value); }))
+        user_error("loss: {}, {}: values of the {} picture are not finite; are the network's weights sound?", term,
+                   block.name, name);
     terms_.push_back({name + ", " + term, share * weight, picture, std::move(describe), std::move(blocks)});
   };
   const DescriptorOptions& how = options.descriptors;

@@ -32,12 +32,12 @@ struct LossOptions {
 ///     loss = sum over pictures p, terms t, blocks b of
 ///              share_p weight_t weight_b mean over i of ((x_i - target_i) / unit_b)^2
 ///
-/// with shares that add up to 1, and units of the target (Block::unit), so that a dim back picture counts as a bright
-/// front one: each term is about the squared relative difference.
+/// with shares that add up to 1, and units of the target (Block::unit): a block counts |x - target|^2 / |target|^2, so
+/// that a dim back picture is worth a bright front one, and a black render loses the sum of the weights.
 class Loss {
  public:
   /// Throws user errors: a picture without pixels, of two sizes or black, a weight below 0 or all of them 0, features
-  /// without a network, a layer that it has not.
+  /// without a network, a layer that it has not, features that overflow.
   Loss(const PicturePair& target, const LossOptions& options, std::shared_ptr<const FeatureNetwork> network = nullptr);
 
   double loss(const PicturePair& pair) const;

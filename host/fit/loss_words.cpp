@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geom/error.h"
+#include "host/fit/vgg16.h"
 #include "host/suggest.h"
 
 namespace wale::fit {
@@ -64,13 +65,17 @@ TermWeights term_weights(const std::string& text) {
 
 }  // namespace
 
-NamedLoss::NamedLoss(const FitArgs& args, const PicturePair& photographs, std::vector<std::string>&) {
+NamedLoss::NamedLoss(const FitArgs& args, const PicturePair& photographs, std::vector<std::string>& warnings) {
   LossOptions options;
   const Alignment alignment = args.unaligned ? Alignment::unaligned : Alignment::aligned;
   options.descriptors.alignment = alignment;
   std::shared_ptr<const FeatureNetwork> network;
   if (!args.weights.empty()) {
-    user_error("--weights: not yet");
+    const std::shared_ptr<const Vgg16> read = read_vgg16(args.weights);
+    // The paper's loss is of all 13 layers; which there are is never a secret.
+    if (read->layers().size() < vgg16_layers().size())
+      warnings.push_back(fmt::format("{}: {}", args.weights.string(), read->text()));
+    network = read;
   } else if (!args.layers.empty()) {
     user_error("--layers: of a network; name its weights too: --weights FILE");
   }

@@ -62,10 +62,12 @@ Photograph read(const std::filesystem::path& file, const PhotographOptions& opti
   StoredImage stored = read_stored_image(file);
   require_places(options, stored.image.width, stored.image.height, name);
   Photograph photograph;
+  warn_of_size(options, stored.image.width, stored.image.height, name, photograph.warnings);
   require_opaque(stored, options, name);
   require_unclipped(stored, options, name, photograph.warnings);
   make_linear(stored, options.transfer);
   const Picture linear = picture_of(stored.image, name);
+  const int bits = stored.integer_bits;
   stored = {};
   photograph.gains = options.gains  ? *options.gains
                      : options.grey ? gains_of_grey(linear, options, name, photograph.warnings)
@@ -78,7 +80,7 @@ Photograph read(const std::filesystem::path& file, const PhotographOptions& opti
     picture = options.crop ? cropped(linear, *options.crop) : linear;
     if (options.size) picture = at_resolution(picture, options.size->x, options.size->y);
   }
-  require_light(picture, name);
+  require_light(picture, bits, name, photograph.warnings);
   for (size_t i = 0; i < picture.pixels.size(); ++i)
     picture.pixels[i] = float(double(picture.pixels[i]) * photograph.gains[i % 3] / options.exposure);
   if (std::min(picture.width, picture.height) < kFewPixels)

@@ -36,7 +36,8 @@ struct Photograph {
 
 /// Reads one photograph: linear light, gains and exposure, then crop or corners. Throws one-line user errors: not an
 /// image, options that contradict each other or lie outside of it, more than 1 % of the pixels clipped, black, not
-/// finite, transparent. Clipped pixels below that share, an uneven reference and few pixels are warnings.
+/// finite, transparent. Clipped pixels below that share, an uneven reference, few pixels, more asked for
+/// than there are, and a dark picture in 8 bits are warnings.
 Photograph read_photograph(const std::filesystem::path& file, const PhotographOptions& options);
 
 /// Two photographs of one cloth from one place.

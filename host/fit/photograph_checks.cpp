@@ -43,29 +43,27 @@ std::string percent(double share) {
 // Counts pixels, and in which of 8 x 8 parts of the picture most of them are.
 class Clipped {
  public:
-  Clipped(const StoredImage& stored, double level) : stored_(stored), level_(level) {}
+  Clipped(const Image& image, double level) : image_(image), channels_(color_channels(image)), level_(level) {}
 
   void look_at(int x, int y) {
-    const Image& image = stored_.image;
     ++seen_;
-    for (size_t c = 0; c < image.channels.size(); ++c)
-      if (int(c) != stored_.alpha && double(image.at(x, y)[c]) >= level_) {
-        ++clipped_;
-        ++parts_[size_t(int64_t(y) * kParts / image.height) * kParts + size_t(int64_t(x) * kParts / image.width)];
-        return;
-      }
+    const float* pixel = image_.at(x, y);
+    if (std::none_of(channels_.begin(), channels_.end(), [&](size_t c) { return double(pixel[c]) >= level_; })) return;
+    ++clipped_;
+    ++parts_[size_t(y) * kParts / size_t(image_.height) * kParts + size_t(x) * kParts / size_t(image_.width)];
   }
   double share() const { return seen_ ? double(clipped_) / double(seen_) : 0; }
   std::string text() const {
     const size_t most = size_t(std::max_element(parts_.begin(), parts_.end()) - parts_.begin());
     const auto centre = [](size_t part, int size) { return int((double(part) + 0.5) * size / kParts); };
     return fmt::format("{} of the cloth's pixels are clipped, most around ({}, {})", percent(share()),
-                       centre(most % kParts, stored_.image.width), centre(most / kParts, stored_.image.height));
+                       centre(most % kParts, image_.width), centre(most / kParts, image_.height));
   }
 
  private:
   static constexpr size_t kParts = 8;
-  const StoredImage& stored_;
+  const Image& image_;
+  std::array<size_t, 3> channels_;
   double level_;
   size_t seen_ = 0, clipped_ = 0;
   std::array<size_t, kParts * kParts> parts_{};
@@ -111,20 +109,37 @@ void require_unclipped(const StoredImage& stored, const PhotographOptions& optio
   const double level = clip_level(stored, options);
   if (options.grey) {
     const Rectangle& r = *options.grey;
-    Clipped grey(stored, level);
+    Clipped grey(stored.image, level);
     for (int y = r.y; y < r.y + r.height; ++y)
       for (int x = r.x; x < r.x + r.width; ++x) grey.look_at(x, y);
     if (grey.share() > 0) user_error("{}: grey: {} of it is clipped; expose less", name, percent(grey.share()));
   }
-  Clipped cloth(stored, level);
+  Clipped cloth(stored.image, level);
   for_cloth(stored.image, options, [&](int x, int y) { cloth.look_at(x, y); });
   if (cloth.share() > kClippedShare) user_error("{}: {}; expose less", name, cloth.text());
   if (cloth.share() > 0) warnings.push_back(fmt::format("{}: {}", name, cloth.text()));
 }
 
-void require_light(const Picture& picture, const std::string& name) {
-  constexpr double kBlack = 1e-5;
-  if (!(brightness(picture) > kBlack)) user_error("{}: it is black: its mean is {:.1e}", name, brightness(picture));
+void require_light(const Picture& picture, int integer_bits, const std::string& name,
+                   std::vector<std::string>& warnings) {
+  constexpr double kBlack = 1e-5, kDim = 1e-2;
+  const double mean = brightness(picture);
+  if (!(mean > kBlack)) user_error("{}: it is black: its mean is {:.1e}", name, mean);
+  if (integer_bits == 8 && mean < kDim)
+    warnings.push_back(fmt::format(
+        "{}: its mean is {:.2g} of full scale, where 8 bits have coarse steps; expose more, or save 16 bits", name,
+        mean));
+}
+
+void warn_of_size(const PhotographOptions& options, int width, int height, const std::string& name,
+                  std::vector<std::string>& warnings) {
+  if (!options.size) return;
+  const ivec2 shown = options.corners ? size_of(*options.corners)
+                      : options.crop  ? ivec2(options.crop->width, options.crop->height)
+                                      : ivec2(width, height);
+  if (options.size->x > shown.x || options.size->y > shown.y)
+    warnings.push_back(fmt::format("{}: size {} x {} is more than the {} x {} pixels of its cloth", name,
+                                   options.size->x, options.size->y, shown.x, shown.y));
 }
 
 }  // namespace wale::fit

@@ -23,7 +23,12 @@ constexpr double kClippedShare = 0.01;
 void require_unclipped(const StoredImage& stored, const PhotographOptions& options, const std::string& name,
                        std::vector<std::string>& warnings);
 
-/// Not black: a mean above 1e-5.
-void require_light(const Picture& picture, const std::string& name);
+/// Not black: a mean above 1e-5 of full scale. Warns below 1e-2 in 8 bits, where sRGB's steps are 6 % and more.
+void require_light(const Picture& picture, int integer_bits, const std::string& name,
+                   std::vector<std::string>& warnings);
+
+/// Warns where a picture is to have more pixels than the photograph shows.
+void warn_of_size(const PhotographOptions& options, int width, int height, const std::string& name,
+                  std::vector<std::string>& warnings);
 
 }  // namespace wale::fit

@@ -1,13 +1,11 @@
 #include "host/fit/picture.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "geom/error.h"
 
 namespace wale::fit {
-namespace {
 
 std::array<size_t, 3> color_channels(const Image& image) {
   std::array<size_t, 3> rgb{};
@@ -19,8 +17,6 @@ std::array<size_t, 3> color_channels(const Image& image) {
   }
   return rgb;
 }
-
-}  // namespace
 
 Picture picture_of(const Image& image, const std::string& name) {
   if (image.width <= 0 || image.height <= 0 || image.channels.empty()) user_error("{}: an image without pixels", name);

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,10 @@ struct PicturePair {
   Picture front, back;
 };
 
-/// The colours of an image: channels R, G and B, else its first three, else its first one three times. Throws a user
+/// Where an image has its colours: channels R, G and B, else its first three, else its first one three times.
+std::array<size_t, 3> color_channels(const Image& image);
+
+/// These colours. Throws a user
 /// error "name: pixel ..." at the first value that is not finite.
 Picture picture_of(const Image& image, const std::string& name);
 

@@ -3,12 +3,15 @@
 
 usage: make_corpus.py [FOLDER]   (pictures need oiiotool)
 """
+import io
 import json
+import math
 import pathlib
 import struct
 import subprocess
 import sys
 import tempfile
+import zipfile
 
 ROOT = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent / "corpus")
 
@@ -206,10 +209,52 @@ def images():
             write("image", name, file.read_bytes())
 
 
+def weights():
+    def npy(shape, data, kind="<f4", fortran=False):
+        header = f"{{'descr': '{kind}', 'fortran_order': {fortran}, 'shape': {shape}, }}\n".encode()
+        return b"\x93NUMPY\1\0" + struct.pack("<H", len(header)) + header + data
+
+    write("npy", "matrix", npy("(2, 3)", struct.pack("<6f", *range(6))))
+    write("npy", "fortran", npy("(1, 2, 2)", struct.pack("<4d", *range(4)), "<f8", True))
+    write("npy", "scalar", npy("()", struct.pack("<f", 1)))
+    write("npy", "version2", b"\x93NUMPY\2\0" + struct.pack("<I", 58) +
+          b"{\"shape\": (0,), \"fortran_order\": False, \"descr\": \"<f4\"}".ljust(57) + b"\n")
+
+    def npz(name, keras, methods):
+        stem, shape = ("block1_conv1_{}", (3, 3, 3, 64)) if keras else ("features.0.{}", (64, 3, 3, 3))
+        data = io.BytesIO()
+        with zipfile.ZipFile(data, "w") as archive:
+            for method, part, extent in zip(methods, *zip((stem.format("kernel") if keras else stem.format("weight"), shape), (stem.format("bias"), (64,)))):
+                entry = zipfile.ZipInfo(part + ".npy")  # of 1980, so that the bytes stay
+                archive.writestr(entry, npy(extent, bytes(4 * math.prod(extent))), method)
+        write("npz", name, data.getvalue())
+
+    packed, stored = zipfile.ZIP_DEFLATED, zipfile.ZIP_STORED
+    npz("keras", True, (packed, packed))
+    npz("torch", False, (packed, stored))
+
+    def field(number, value):
+        if isinstance(value, int):
+            return bytes([number << 3, value])
+        return bytes([number << 3 | 2, len(value)]) + value
+
+    def node(kind, *names):
+        return field(1, b"".join(field(1, n) for n in names) + field(2, b"y") + field(4, kind))
+
+    # The target has the first layer's weights "w" and "b" (tests/fuzz/weights.cpp).
+    write("onnx", "layer", field(1, 8) + field(7, node(b"Conv", b"x", b"w", b"b")))
+    tensor = field(1, 2) + field(1, 1) + field(2, 1) + field(8, b"t") + field(9, struct.pack("<2f", 1, 2))
+    write("onnx", "chain", field(2, b"some exporter") + field(7, field(2, b"vgg") + field(5, tensor) + node(b"Sub", b"p", b"t") +
+          node(b"Conv", b"x", b"w", b"b") + node(b"Relu", b"y") + node(b"MaxPool", b"y")))
+    packed_axes = field(1, bytes([2, 1])) + field(2, 1) + field(8, b"t") + field(4, struct.pack("<2f", 1, 2))
+    write("onnx", "packed", field(7, field(5, packed_axes) + node(b"Conv", b"x", b"w", b"b")))
+
+
 patterns()
 charts()
 meshes()
 sequences()
 scenes()
 requests()
+weights()
 images()

@@ -40,5 +40,8 @@ bool material(std::string_view bytes);
 bool overrides(std::string_view bytes);
 bool image(std::string_view bytes);
 bool request(std::string_view bytes);
+bool npy(std::string_view bytes);
+bool npz(std::string_view bytes);
+bool onnx(std::string_view bytes);
 
 }  // namespace wale::fuzz

@@ -102,8 +102,17 @@ TEST(FitLoss, FartherPicturesLoseMore) {
   }
 }
 
-// Of each term alone, 10 % more light is a relative difference of 0.1: of the mean of x^2 over the mean of |x| squared,
-// at least 0.01.
+// A black render has the relative difference 1 in every value.
+TEST(FitLoss, BlackLosesTheSumOfTheWeights) {
+  for (const Alignment alignment : {Alignment::aligned, Alignment::unaligned}) {
+    LossOptions options;
+    options.descriptors.alignment = alignment;
+    options.weights = TermWeights{.low_pass = 1, .color = 0.5, .gradient = 0.3, .spectrum = 0.2};
+    EXPECT_NEAR(Loss(pair_of(), options).loss({Picture(48, 40), Picture(48, 40)}), 2, 1e-6);
+  }
+}
+
+// 10 % more light is a squared relative difference of 0.01.
 TEST(FitLoss, OnlyTheRelativeDifferenceCounts) {
   LossOptions options;
   options.weights = TermWeights{.low_pass = 1};
@@ -138,6 +147,46 @@ TEST(FitLoss, KnownValuesOfTheFeatures) {
   EXPECT_NEAR(dim[0].values[4], std::sqrt(2.0) * v * (1 - v), 1e-5);
   EXPECT_NEAR(dim[0].values[5], (1 - v) * (1 - v), 1e-5);
   EXPECT_NEAR(display_exposure(flat(0.2)), 4, 1e-6);
+  // Each picture is exposed by the target's light: scaled alike, both lose nothing, however dim.
+  const Blocks exposed = feature_descriptor(network, options.layers, 4, options.descriptors)(flat(0.05));
+  EXPECT_NEAR(exposed[0].values[3], v * v, 1e-5);
+  const Loss bright({flat(0.2), flat(0.2)}, options, network), dark({flat(0.002), flat(0.002)}, options, network);
+  EXPECT_NEAR(dark.loss({flat(0.001), flat(0.001)}) / bright.loss({flat(0.1), flat(0.1)}), 1, 1e-4);
+}
+
+TEST(FitLoss, KnownColors) {
+  // Two halves: red 0 and 1, green 0.25, blue 1 and 0.
+  const Picture halves = painted(32, 8, [](int x, int, int c) {
+    return c == 1 ? 0.25 : (x < 16) == (c == 2) ? 1.0 : 0.0;
+  });
+  const Blocks blocks = color_descriptor({})(halves);
+  ASSERT_EQ(blocks.size(), 3u);
+  EXPECT_EQ(blocks[0].values, (std::vector<float>{0.5f, 0.25f, 0.5f}));
+  // Covariance 1/4 of (1, 0, -1) times itself, whose root is that over the square root of 8.
+  const double root = 1 / std::sqrt(8.0), expected[] = {root, 0, -root, 0, 0, 0, -root, 0, root};
+  ASSERT_EQ(blocks[1].values.size(), 9u);
+  for (size_t i = 0; i < 9; ++i) EXPECT_NEAR(blocks[1].values[i], expected[i], 1e-7) << i;
+  ASSERT_EQ(blocks[2].values.size(), 48u);
+  for (size_t q = 0; q < 16; ++q) {
+    EXPECT_EQ(blocks[2].values[q], q < 8 ? 0 : 1);
+    EXPECT_EQ(blocks[2].values[16 + q], 0.25f);
+  }
+  for (const Block& block : blocks) EXPECT_NEAR(block.weight, 1.0 / 3, 1e-12);
+}
+
+TEST(FitLoss, KnownEdges) {
+  const Picture ramp = painted(16, 12, [](int x, int y, int) { return 0.1 * x - 0.2 * y; });
+  DescriptorOptions options;
+  options.levels = 1;
+  const Blocks aligned = gradient_descriptor(options)(ramp);
+  ASSERT_EQ(aligned[0].values.size(), 3u * (15 * 12 + 16 * 11));
+  EXPECT_NEAR(aligned[0].values.front(), 0.1, 1e-6);
+  EXPECT_NEAR(aligned[0].values.back(), -0.2, 1e-6);
+  options.alignment = Alignment::unaligned;
+  options.windows = 1;
+  const Blocks sizes = gradient_descriptor(options)(ramp);
+  ASSERT_EQ(sizes[0].values.size(), 12u);  // sizes across, root mean squares across, both down
+  for (size_t i = 0; i < 12; ++i) EXPECT_NEAR(sizes[0].values[i], i < 6 ? 0.1 : 0.2, 1e-6) << i;
 }
 
 // Moved by half a stitch, a cloth looks the same: statistics see it far less than pixels do.

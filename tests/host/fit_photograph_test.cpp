@@ -1,4 +1,6 @@
 // Photographs become linear light in known units, or are refused with a line that says why.
+#include <zlib.h>
+
 #include "host/fit/photograph.h"
 #include "host/schema.h"
 #include "tests/host/fit_pictures.h"
@@ -30,6 +32,30 @@ class FitPhotograph : public testing::Test {
   }
   TemporaryFolder folder_;
 };
+
+// A PNG of one grey and one alpha.
+std::string grey_png(uint32_t width, uint32_t height, int grey, int alpha) {
+  const auto number = [](uint32_t value) {
+    std::string text;
+    for (int shift = 24; shift >= 0; shift -= 8) text += char(value >> shift);
+    return text;
+  };
+  const auto chunk = [&](const std::string& content) {
+    const auto* bytes = reinterpret_cast<const Bytef*>(content.data());
+    return number(uint32_t(content.size() - 4)) + content + number(uint32_t(crc32(0, bytes, uInt(content.size()))));
+  };
+  std::string rows;
+  for (uint32_t y = 0; y < height; ++y) {
+    rows += '\0';  // no filter
+    for (uint32_t x = 0; x < width; ++x) rows += {char(grey), char(alpha)};
+  }
+  std::string packed(compressBound(uLong(rows.size())), '\0');
+  uLongf size = uLongf(packed.size());
+  compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(rows.data()),
+           uLong(rows.size()));
+  return "\x89PNG\r\n\x1a\n" + chunk("IHDR" + number(width) + number(height) + std::string("\x08\x04\0\0\0", 5)) +
+         chunk("IDAT" + packed.substr(0, size)) + chunk("IEND");
+}
 
 const Rectangle kCard{0, 0, 8, 64}, kCloth{8, 0, 56, 56};
 
@@ -142,12 +168,68 @@ TEST_F(FitPhotograph, NotFiniteAndTransparent) {
             "alpha.exr: pixel (0, 0) is transparent; crop to the cloth, or save without alpha");
 }
 
+// A film's or a file's channels by their names; one of grey counts thrice, and alpha is no colour.
+TEST_F(FitPhotograph, ChannelsAreFoundByName) {
+  const Image layers{1, 1, {"variance.R", "B", "G", "R"}, {9, 3, 2, 1}};
+  EXPECT_EQ(picture_of(layers, "layers").pixels, (std::vector<float>{1, 2, 3}));
+  const Image grey{1, 1, {"Y", "A"}, {0.5f, 1}};
+  EXPECT_EQ(picture_of(grey, "grey").pixels, (std::vector<float>{0.5f, 0.5f, 0.5f}));
+  EXPECT_EQ(user_message([] { picture_of(Image{}, "none"); }), "none: an image without pixels");
+  // 8-bit grey with alpha all 1 is not clipped.
+  const Photograph photograph = read_photograph(folder_.write("grey.png", grey_png(70, 70, 128, 255)), {});
+  EXPECT_NEAR(photograph.picture.at(3, 3)[2], srgb_to_linear(128 / 255.0), 1e-6);
+  EXPECT_TRUE(photograph.warnings.empty());
+  EXPECT_NE(refusal(folder_.write("clear.png", grey_png(70, 70, 128, 254)), {}).find("is transparent"),
+            std::string::npos);
+}
+
 TEST_F(FitPhotograph, AnUnevenReferenceAndFewPixelsAreWarnings) {
   const auto file = folder_.write("u.ppm", ppm(64, 64, 8, [](int x, int, int) { return x < 4 ? 60 : 110; }));
   const auto warnings = read_photograph(file, {.grey = kCard, .crop = Rectangle{8, 0, 20, 20}}).warnings;
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_NE(warnings[0].find("grey: varies by"), std::string::npos);
   EXPECT_NE(warnings[1].find("20 x 20 pixels of cloth"), std::string::npos);
+}
+
+constexpr double kSixteenBits = 2e-5;  // one step of 16 bits, by OpenImageIO's PNM reader
+
+// With a card in the front picture, exposures say how much longer the back's was.
+TEST_F(FitPhotograph, ACardAndTwoExposures) {
+  const auto file = [&](const std::string& name, int card, int cloth) {
+    return folder_.write(name, ppm(80, 80, 16, [=](int x, int, int) { return x < 8 ? card : cloth; }));
+  };
+  PairOptions options;
+  for (PhotographOptions* one : {&options.front, &options.back}) {
+    one->transfer = Transfer::linear;
+    one->crop = Rectangle{8, 0, 72, 80};
+  }
+  options.front.grey = kCard;
+  options.front.exposure = 2;
+  options.back.exposure = 20;
+  const auto pair = read_pair(file("f.ppm", 18000, 40000), file("b.ppm", 5, 30000), options).pictures;
+  EXPECT_NEAR(pair.front.at(1, 1)[0], 0.18 * 40000 / 18000, kSixteenBits);
+  EXPECT_NEAR(pair.back.at(1, 1)[0], 0.18 * 3000 / 18000, kSixteenBits);
+}
+
+TEST_F(FitPhotograph, DarkInEightBitsAndEnlargedAreWarnings) {
+  const auto warnings_of = [&](int bits, int value, const PhotographOptions& options = {}) {
+    return read_photograph(folder_.write("w.ppm", ppm(70, 70, bits, [=](int, int, int) { return value; })), options)
+        .warnings;
+  };
+  const auto dark = warnings_of(8, 24);
+  ASSERT_EQ(dark.size(), 1u);
+  EXPECT_NE(dark[0].find("its mean is 0.0091 of full scale, where 8 bits have coarse steps"), std::string::npos)
+      << dark[0];
+  EXPECT_TRUE(warnings_of(8, 27).empty());
+  EXPECT_TRUE(warnings_of(16, 24 * 257).empty());
+  EXPECT_TRUE(warnings_of(8, 99, {.size = ivec2(70, 70)}).empty());
+  const Corners corners{dvec2(0, 0), dvec2(66, 0), dvec2(66, 70), dvec2(0, 70)};
+  for (const PhotographOptions& options : {PhotographOptions{.crop = Rectangle{0, 0, 66, 70}, .size = ivec2(67, 64)},
+                                           PhotographOptions{.corners = corners, .size = ivec2(67, 64)}}) {
+    const auto larger = warnings_of(8, 99, options);
+    ASSERT_EQ(larger.size(), 1u);
+    EXPECT_NE(larger[0].find("size 67 x 64 is more than the 66 x 70 pixels of its cloth"), std::string::npos);
+  }
 }
 
 // The back is exposed eight times as long; the card was in the front's picture.

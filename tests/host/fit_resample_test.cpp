@@ -127,6 +127,12 @@ TEST(FitHomography, AChessboardIsSeenStraightOn) {
     for (int x = 0; x < 8; ++x) EXPECT_NEAR(board.at(x, y)[0], (x + y) % 2, 0.05) << x << " " << y;
 }
 
+TEST(FitHomography, TheSizeIsThatOfTheLongerSides) {
+  const ivec2 size = size_of({dvec2(10, 0), dvec2(30, 0), dvec2(40, 50), dvec2(0, 50)});
+  EXPECT_EQ(size.x, 40);
+  EXPECT_EQ(size.y, 51);  // of length 50.99
+}
+
 TEST(FitHomography, WrongCornersAreNamed) {
   const Corners good{dvec2(1, 1), dvec2(9, 1), dvec2(9, 9), dvec2(1, 9)};
   EXPECT_EQ(corners_fault(good, 10, 10), "");

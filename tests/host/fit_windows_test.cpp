@@ -31,6 +31,13 @@ TEST(FitWindows, CoverThePictureAndAreOfOneSize) {
   }
 }
 
+TEST(FitWindows, FadeOutAsASquaredSine) {
+  const Window window = windows(4, 9, 1)[0];
+  const double s = std::sin(std::numbers::pi / 8), c = std::cos(std::numbers::pi / 8), sum_of_all = 2 * (s * s + c * c);
+  EXPECT_NEAR(window.across[0], s * s / sum_of_all, 1e-12);
+  EXPECT_NEAR(window.across[2], c * c / sum_of_all, 1e-12);
+}
+
 TEST(FitWindows, MomentsOfTwoColors) {
   const Picture halves = painted(8, 4, [](int x, int, int c) { return x < 4 ? 1 : c == 0 ? 3 : 2; });
   const ColorMoments moments = color_moments(halves, whole_picture(8, 4));
