@@ -99,14 +99,24 @@ BaseMesh MeshSequence::rest() const {
   if (!rest_) {
     const Place p = place(double(source_.rest));
     if (!there(p.before)) user_error("the rest, {}", missing(p.before));
-    rest_ = std::make_unique<BaseMesh>(store_->read(p.before));
+    rest_ = std::make_unique<BaseMesh>(load(p.before));
   }
   return *rest_;
 }
 
+// The reader's messages name the file; which frame it is stands before them.
+BaseMesh MeshSequence::load(long number) const {
+  try {
+    return store_->read(number);
+  } catch (const Error& error) {
+    if (error.fault() != Fault::user) throw;
+    user_error("frame {:g}: {}", frame_of(number), error.what());
+  }
+}
+
 BaseMesh MeshSequence::read(long number) const {
   if (!there(number)) user_error("{}", missing(number));
-  BaseMesh mesh = store_->read(number);
+  BaseMesh mesh = load(number);
   if (source_.changing) return mesh;
   rest();
   if (mesh.position.size() != rest_->position.size() || mesh.triangle != rest_->triangle)
@@ -148,6 +158,25 @@ std::vector<long>::const_iterator MeshSequence::held(long number) const {
   return after == numbers_.begin() ? after : after - 1;
 }
 
+// What read_or_hold() reads for a number, tried once. Of frames that are an error it is any.
+long MeshSequence::shown(long number) const {
+  auto candidate = held(number);
+  if (!source_.hold) return *candidate;
+  const auto readable = [&](long n) {
+    const auto known = readable_.find(n);
+    if (known != readable_.end()) return known->second;
+    try {
+      read(n);
+      return readable_[n] = true;
+    } catch (const Error& error) {
+      if (error.fault() != Fault::user) throw;
+      return readable_[n] = false;
+    }
+  };
+  while (candidate != numbers_.begin() && !readable(*candidate)) --candidate;
+  return *candidate;
+}
+
 BaseMesh MeshSequence::at(double frame, std::vector<std::string>* notes) const {
   const Place p = place(frame);
   BaseMesh mesh = read_or_hold(p.before, notes);
@@ -165,7 +194,8 @@ uint64_t MeshSequence::hash(double frame) const {
   const auto add = [&](auto value) {
     h = hash_bytes(std::string_view(reinterpret_cast<const char*>(&value), sizeof value), h);
   };
-  for (const long number : {place(double(source_.rest)).before, p.before, p.after}) add(store_->hash(*held(number)));
+  add(store_->hash(*held(place(double(source_.rest)).before)));
+  for (const long number : {p.before, p.after}) add(store_->hash(shown(number)));
   add(p.share);
   return h;
 }

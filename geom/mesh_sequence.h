@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,7 +44,7 @@ class MeshSequence {
   /// Throws what at() would where it can be known without reading meshes.
   void require(double frame) const;
 
-  /// Hash of the bytes that at() would read.
+  /// Hash of the bytes that at() would show: of the frame before, where a frame is damaged and held.
   uint64_t hash(double frame) const;
 
   const SequenceSource& source() const { return source_; }
@@ -59,7 +60,9 @@ class MeshSequence {
   bool there(long number) const;
   std::string missing(long number) const;
   std::vector<long>::const_iterator held(long number) const;
+  BaseMesh load(long number) const;
   BaseMesh read(long number) const;
+  long shown(long number) const;
   BaseMesh read_or_hold(long number, std::vector<std::string>* notes) const;
   std::string range_text() const;
 
@@ -68,6 +71,7 @@ class MeshSequence {
   double frames_per_number_ = 1;
   std::vector<long> numbers_;  ///< within first and last, in the order of frames
   mutable std::unique_ptr<BaseMesh> rest_;
+  mutable std::map<long, bool> readable_;  ///< numbers that hash() has tried
 };
 
 }  // namespace wale

@@ -13,6 +13,7 @@
 #include "host/frame_stats.h"
 #include "host/image_coder.h"
 #include "host/live_scene.h"
+#include "host/output_names.h"
 #include "host/progress.h"
 #include "host/rare_events.h"
 #include "host/rehearsal.h"
@@ -92,18 +93,28 @@ class Frames {
       if (times.size() > 1 && !NumberedName::is_one(output))
         user_error("{}: {} frames cannot share a name; write # for each digit of their number, for example {}_####{}",
                    output.string(), times.size(), output.stem().string(), output.extension().string());
+    OutputNames names;
+    for (const auto& output : {args_.stats, args_.video})
+      if (!output.empty()) names.add(output);
     if (!args_.stats.empty()) require_writable_path(args_.stats);
     if (!args_.video.empty()) require_video(args_.video);
     for (const double at : times) {
       Frame frame{at, {}, {}, false};
       for (const auto& output : args_.outputs) {
         frame.files.push_back(NumberedName::is_one(output) ? NumberedName(output).file(std::lround(at)) : output);
+        names.add(frame.files.back());
         aovs_ |= is_exr(output);
       }
-      check(frame);
       frames_.push_back(std::move(frame));
     }
     for (const auto& output : frames_.front().files) require_writable(output);
+    // Each frame's scene is read and its files are hashed: of many frames that takes a while.
+    Progress bar("check", args_.quiet || frames_.size() == 1);
+    for (size_t i = 0; i < frames_.size(); ++i) {
+      bar.update(double(i) / double(frames_.size()), fmt::format("frame {:g}", frames_[i].at));
+      check(frames_[i]);
+    }
+    bar.finish();
   }
 
   // When a frame is seen: at the middle of each of equal parts of the time that the shutter is open.

@@ -10,6 +10,7 @@
 #include "host/commands.h"
 #include "host/image_coder.h"
 #include "host/memory_needs.h"
+#include "host/output_names.h"
 #include "host/progress.h"
 #include "host/rare_events.h"
 #include "host/rehearsal.h"
@@ -38,9 +39,8 @@ class Devices {
     }
     std::vector<std::future<std::unique_ptr<SceneDevice>>> scenes;
     for (const Device& device : open_)
-      scenes.push_back(std::async(open_.size() > 1 ? std::launch::async : std::launch::deferred, [&] {
-        return std::make_unique<SceneDevice>(device, world);
-      }));
+      scenes.push_back(std::async(open_.size() > 1 ? std::launch::async : std::launch::deferred,
+                                  [&] { return std::make_unique<SceneDevice>(device, world); }));
     for (auto& scene : scenes) scenes_.push_back(scene.get());
     for (size_t d = 0; d < open_.size(); ++d) list_.push_back({&open_[d], scenes_[d].get()});
   }
@@ -150,8 +150,11 @@ int run_render(const RenderArgs& args, const Loaders& loaders) {
   // Everything that can be refused is refused before the long work starts.
   const int spp = most_samples(args, scene.integrator);
   bool aovs = false;
+  OutputNames names;
+  if (!args.stats.empty()) names.add(args.stats);
   for (const auto& output : args.outputs) {
     require_writable(output);
+    names.add(output);
     aovs |= is_exr(output);
   }
   if (!args.stats.empty()) require_writable_path(args.stats);

@@ -19,7 +19,7 @@ bool FibreTables::any() const {
   return std::any_of(details.begin(), details.end(), [](const auto& d) { return d.level != W_DETAIL_NONE; });
 }
 
-void FibreTables::add(const FibreRecipe& wanted, double ply_radius, Detail level) {
+void FibreTables::add(const FibreRecipe& wanted, double ply_radius, Detail level, const FibreTables* previous) {
   static_assert(W_DETAIL_BINS == FibreDetail::kBins);
   WFibreDetail out{};
   if (level != Detail::paper && level != Detail::maps) {
@@ -28,7 +28,14 @@ void FibreTables::add(const FibreRecipe& wanted, double ply_radius, Detail level
   }
   FibreRecipe recipe = wanted;
   if (level == Detail::paper) recipe.migration_min = 1;
-  const FibreDetail detail(recipe);
+  const auto known = [&]() -> std::shared_ptr<const FibreDetail> {
+    for (const FibreTables* tables : {const_cast<const FibreTables*>(this), previous})
+      for (size_t i = 0; tables && i < tables->made.size(); ++i)
+        if (tables->made[i].from == recipe) return tables->made[i].detail;
+    return std::make_shared<FibreDetail>(recipe);
+  };
+  const Made& section = made.emplace_back(Made{recipe, known()});
+  const FibreDetail& detail = *section.detail;
   out.level = level == Detail::paper ? W_DETAIL_PAPER : W_DETAIL_MAPS;
   out.first_offset = w_uint(offsets.size());
   out.turns = float(whole_turns(recipe.twist, ply_radius));

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "geom/fabric.h"
@@ -16,8 +17,15 @@ struct FibreTables {
 
   bool any() const;  ///< some material shows its fibres by maps
   /// Appends the next ply material. ply_radius in metres; turns and migrations become whole numbers per
-  /// W_LENGTH_PERIOD, where stored lengths wrap.
-  void add(const FibreRecipe& recipe, double ply_radius, Detail level);
+  /// W_LENGTH_PERIOD, where stored lengths wrap. A section that `previous` has already is not laid out again.
+  void add(const FibreRecipe& recipe, double ply_radius, Detail level, const FibreTables* previous = nullptr);
+
+  /// Sections of the tables by what they were made from: laying one out takes tens of milliseconds.
+  struct Made {
+    FibreRecipe from;
+    std::shared_ptr<const FibreDetail> detail;
+  };
+  std::vector<Made> made;
 };
 
 }  // namespace wale

@@ -1,6 +1,7 @@
 #include "host/file_fence.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "geom/error.h"
 #include "geom/numbered_name.h"
@@ -32,9 +33,20 @@ bool FileFence::admits_all(const fs::path& pattern) {
   if (!NumberedName::is_one(pattern)) return true;
   const NumberedName name(pattern);
   std::error_code failed;
-  for (fs::directory_iterator at(name.folder(), failed), end; !failed && at != end; at.increment(failed))
-    if (std::error_code none; at->is_symlink(none) && name.number(at->path().filename().string()))
+  const fs::path folder = name.folder().empty() ? fs::path(".") : name.folder();
+  const auto changed = fs::last_write_time(folder, failed);
+  if (failed) return true;  // nothing to be read there
+  const auto known = without_links_.find(pattern);
+  if (known != without_links_.end() && known->second == changed) return true;
+  bool links = false;
+  for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
+    if (std::error_code none; at->is_symlink(none) && name.number(at->path().filename().string())) {
+      links = true;
       if (!admits(at->path())) return false;
+    }
+  // Where links lead may change elsewhere; and a folder may change again within one tick of its clock.
+  constexpr std::chrono::seconds kTick{2};
+  if (!failed && !links && fs::file_time_type::clock::now() - changed > kTick) without_links_[pattern] = changed;
   return true;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 
@@ -25,6 +26,8 @@ class FileFence {
  private:
   std::filesystem::path folder_;
   std::set<std::filesystem::path> named_;
+  /// Names with a number among whose files no link was, and when their folder had changed last.
+  std::map<std::filesystem::path, std::filesystem::file_time_type> without_links_;
   bool closed_ = false;
 };
 

@@ -25,7 +25,8 @@ struct JsonNode {
   struct Member;
   Place place;
   bool boolean = false;
-  double number = 0;  ///< integers too
+  double number = 0;          ///< integers too
+  bool between_keys = false;  ///< a number that lies between those of two key frames
   std::string text;
   std::vector<JsonNode> items;
   std::vector<Member> members;

@@ -116,6 +116,7 @@ JsonNode KeyTrack::at(double frame) const {
     if (node.is_number()) {
       node.number = between();
       node.kind = Kind::number;
+      node.between_keys = true;
     }
     for (size_t k = 0; k < node.items.size(); ++k) {
       steps.push_back(k);

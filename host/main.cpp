@@ -34,9 +34,19 @@ CLI::Validator finite_number(bool zero_too) {
       "NUMBER");
 }
 
+// CLI11 takes "" for a value; where it would mean the same as no option it is a mistake of a script.
+CLI::Validator not_empty(const std::string& example) {
+  return CLI::Validator(
+      [example](const std::string& text) {
+        return text.empty() ? "the value is empty; for example " + example : std::string();
+      },
+      "TEXT");
+}
+
 void add_scene_options(CLI::App& command, SceneArgs& args) {
   command.add_option("SCENE", args.scene, "scene file")->required();
-  command.add_option("--preset", args.preset, "accuracy: " + wale::preset_names() + "; goes before --set");
+  command.add_option("--preset", args.preset, "accuracy: " + wale::preset_names() + "; goes before --set")
+      ->check(not_empty("draft"));
   command
       .add_option("--set", args.set,
                   "change a key of the scene: key.path=value (repeatable; * = every element of a list)")
@@ -187,12 +197,13 @@ int run(int argc, char** argv) {
   c->add_option("--error", render.error, "stop each tile at this noise, relative to its mean: 0.05")
       ->check(finite_number(false));
   c->add_option("--seconds", render.seconds, "stop after this many seconds of rendering")->check(finite_number(false));
-  c->add_option("--size", render.size, "WIDTHxHEIGHT");
-  c->add_option("--stats", render.stats, "write what was done as JSON");
+  c->add_option("--size", render.size, "WIDTHxHEIGHT")->check(not_empty("512x512"));
+  c->add_option("--stats", render.stats, "write what was done as JSON")->check(not_empty("stats.json"));
   c->add_option("--frames", render.frames,
-                "frames of an animation: 7, 0..47 or 0..47:2; # in an output is a digit of the number");
+                "frames of an animation: 7, 0..47 or 0..47:2; # in an output is a digit of the number")
+      ->check(not_empty("0..47"));
   c->add_flag("--redo", render.redo, "write over frames of another scene or other settings");
-  c->add_option("--video", render.video, "join the frames to a video (needs ffmpeg)");
+  c->add_option("--video", render.video, "join the frames to a video (needs ffmpeg)")->check(not_empty("film.mp4"));
   c->callback([&] { status = wale::run_render(render, loaders); });
 
   SceneArgs scene;

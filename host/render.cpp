@@ -40,7 +40,8 @@ class Job {
         options_(options),
         progress_(progress),
         aovs_(options.aovs || options.also.aovs || options.gradients),
-        frame_(frame_of(world, integrator)) {
+        frame_(frame_of(world, integrator)),
+        origin_(world.origin) {
     width_ = world.camera.width, height_ = world.camera.height;
     pixels_ = uint32_t(padded_pixels(width_, height_));
     waves_.resize(devices.size());
@@ -70,7 +71,7 @@ class Job {
     film_ = std::make_unique<SharedFilm>(std::move(films), *list_, pixels_, block_pixels_);
   }
 
-  Rendered run(const World& world, const IntegratorScene& integrator) {
+  Rendered run(const IntegratorScene& integrator) {
     if (options_.ready) options_.ready();
     start_ = Clock::now();
     const std::clock_t cpu = std::clock();
@@ -90,9 +91,9 @@ class Job {
       share.path_bytes = waves_[d]->bytes();
       result_.counts += share.counts;
     }
-    const double origin[3] = {world.origin.x, world.origin.y, world.origin.z};
+    const double origin[3] = {origin_.x, origin_.y, origin_.z};
     result_.reached = film_->reached(options_.error, floor_.value_or(0));
-    const FilmSums sums = film_->gather(world.camera.width, world.camera.height, aovs_);
+    const FilmSums sums = film_->gather(width_, height_, aovs_);
     result_.image = options_.gradients ? develop_gradients(sums) : develop(sums, origin);
     return std::move(result_);
   }
@@ -175,6 +176,7 @@ class Job {
                 "motion blur: the scene needs other programs at another moment of this frame; build them all in with "
                 "--features all");
           waves_[d]->rebind(*moment.devices[d].scene, features, moment.world->camera, true);
+          waves_[d]->shift_positions(moment.world->origin - origin_);
         }
       }
       list_->ask(blocks, uint32_t((k + 1) * spp / moments));
@@ -255,6 +257,7 @@ class Job {
   const std::function<void(double)>& progress_;
   bool aovs_;
   WFrame frame_;
+  dvec3 origin_;  ///< that positions in the film count from
   int width_ = 0, height_ = 0;
   uint32_t pixels_ = 0, block_pixels_ = kTilePixels;
   std::vector<double> seconds_per_path_;  ///< of each device's last wave
@@ -301,7 +304,7 @@ Features features_of(const DeviceTraits& traits, const World& world, const Integ
 
 Rendered render(std::span<const RenderDevice> devices, const World& world, const IntegratorScene& integrator,
                 const RenderOptions& options, const std::function<void(double)>& progress) {
-  return Job(devices, world, integrator, options, progress).run(world, integrator);
+  return Job(devices, world, integrator, options, progress).run(integrator);
 }
 
 Rendered render(const Device& device, const World& world, const SceneDevice& scene, const IntegratorScene& integrator,

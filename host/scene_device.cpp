@@ -87,13 +87,6 @@ SceneDevice::SceneDevice(const Device& device, const World& world, const SceneDe
     fabrics_ = previous->fabrics_;
     moved_fabrics_ = fabrics_->places != places;
   }
-  if (moved_fabrics_) {
-    const MeshVertices mesh = mesh_vertices(inputs, world.origin);
-    fabrics_->somewhere = false;
-    update_fabrics(device, fabrics_->device, mesh.positions, mesh.normals);
-    fabrics_->places = places;
-    fabrics_->somewhere = true;
-  }
   if (previous && previous->simt_ == simt_ && previous->surfaces_->words == world.triangles)
     surfaces_ = previous->surfaces_;
   else
@@ -118,6 +111,17 @@ SceneDevice::SceneDevice(const Device& device, const World& world, const SceneDe
   env_cdf_ = Buffer<float>(device, world.environment_tables.cdf);
   events_ = Buffer<uint32_t>(device, W_COUNTER_COUNT);
   events_.fill(device, 0u);
+  // Last: the version before has the same fabrics, and keeps them where they are when anything above fails.
+  if (moved_fabrics_) move_fabrics(inputs, world.origin, places);
+}
+
+void SceneDevice::move_fabrics(const std::vector<FabricInput>& inputs, const dvec3& origin,
+                               const std::vector<MeshPlace>& places) {
+  const MeshVertices mesh = mesh_vertices(inputs, origin);
+  fabrics_->somewhere = false;
+  update_fabrics(device_, fabrics_->device, mesh.positions, mesh.normals);
+  fabrics_->places = places;
+  fabrics_->somewhere = true;
 }
 
 cl_uint SceneDevice::bind_scene(cl::Kernel& kernel, cl_uint first, bool procedural) const {

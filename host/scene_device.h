@@ -73,6 +73,7 @@ class SceneDevice {
     bool operator==(const FabricKey&) const = default;
   };
   static FabricKey fabric_key(const World& world);
+  void move_fabrics(const std::vector<FabricInput>& inputs, const dvec3& origin, const std::vector<MeshPlace>& places);
 
   FabricKey key_;
   bool shares_fabrics_ = false, moved_fabrics_ = false;

@@ -77,6 +77,7 @@ class Checker {
 
   void check_number(const SchemaType& type, JsonNode& node, const std::string& path, bool whole) const {
     if (!node.is_number()) wrong_type(node, whole ? "a whole number" : "a number", path);
+    if (whole && node.between_keys) node.number = std::round(node.number);
     if (whole && node.number != std::floor(node.number)) wrong_type(node, "a whole number", path);
     if (!type.range.contains(node.number))
       fail(node.place, path, "{:g} is out of range; valid: {}", node.number, type.range.text());
@@ -93,7 +94,9 @@ class Checker {
   static void check_choice(const SchemaType& type, const JsonNode& node, const std::string& path) {
     const bool known =
         node.is_number() && std::find(type.integers.begin(), type.integers.end(), node.number) != type.integers.end();
-    if (!known) fail(node.place, path, "{} is not valid; valid: {}", node.describe(), fmt::join(type.integers, ", "));
+    if (!known)
+      fail(node.place, path, "{} is not valid; valid: {}{}", node.describe(), fmt::join(type.integers, ", "),
+           node.between_keys ? "; nothing lies between them, write the keys with \"hold\"" : "");
   }
 
   void check_file(JsonNode& node, const std::string& path) const {

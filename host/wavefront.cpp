@@ -181,7 +181,15 @@ void Wavefront::bind() {
     set_args(k, next, shadow_list_.cl(), queue_counts_.cl());
   }
   set_args(kernel("accumulate"), 1, camera_, tiles_.cl());
-  if (features_.four_vectors()) set_args(kernel("accumulate_aov"), 1, camera_, tiles_.cl());
+  if (features_.four_vectors()) {
+    set_args(kernel("accumulate_aov"), 1, camera_, tiles_.cl());
+    kernel("accumulate_aov").setArg(8, shift_);
+  }
+}
+
+void Wavefront::shift_positions(const dvec3& shift) {
+  shift_ = {{float(shift.x), float(shift.y), float(shift.z), 0}};
+  if (features_.four_vectors()) kernel("accumulate_aov").setArg(8, shift_);
 }
 
 void Wavefront::launch(const std::string& name, size_t items, bool camera_rays) {

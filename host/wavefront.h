@@ -31,6 +31,9 @@ class Wavefront {
   /// Goes on with another version of the scene, seen by another camera with as many pixels, and an empty film unless
   /// it is kept. The programs stay: the version must be one that they serve (serves()).
   void rebind(const SceneDevice& scene, const Features& features, const WCamera& camera, bool keep_film = false);
+  /// From now on the positions of what is met count from a place that lies at -shift, metres, from the scene's origin:
+  /// a film that is kept has one place, whatever the origins of the versions it is made of.
+  void shift_positions(const dvec3& shift);
   /// Counts the rare events of its scene so far, which may go afterwards: before it is bound to another one.
   void leave_scene();
   /// Programs built for `features` and a scene that lies like `scene` are those of this wavefront.
@@ -88,6 +91,7 @@ class Wavefront {
   const SceneDevice* scene_;
   Features features_;
   WCamera camera_;
+  cl_float4 shift_{};  ///< see shift_positions()
   std::filesystem::path kernel_dir_;
   std::optional<StageProgram> waiting_;  ///< that of packets, while it is being compiled
   uint32_t pool_;

@@ -70,7 +70,8 @@ class Builder {
       world_.fabric_material.push_back(uint32_t(world_.ply_materials.size()));
       const MadeYarn& material = make_yarn(yarn, made.report.fibres > 0);
       world_.ply_materials.push_back(material.ply);
-      world_.fibres.add(fibre_recipe(yarn), made.ply_radius, fabric.spec.detail);
+      world_.fibres.add(fibre_recipe(yarn), made.ply_radius, fabric.spec.detail,
+                        previous_ ? &previous_->fibres : nullptr);
       const bool fibres = made.report.fibres > 0;
       world_.fabric_fibre_material.push_back(fibres ? uint32_t(world_.fibre_materials.size()) : W_NONE);
       if (fibres) world_.fibre_materials.push_back(*material.fibre);

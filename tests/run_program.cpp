@@ -96,7 +96,8 @@ int Process::wait(double seconds) {
 }
 
 std::vector<std::string> Outcome::complaints() const {
-  static const std::regex progress("(knit|render|frames|video) +[0-9]+ %.*|[0-9]+ (to [0-9]+ )?samples per pixel.* in .*|error of a tile: .*");
+  static const std::regex progress(
+      "(knit|render|check|frames|video) +[0-9]+ %.*|[0-9]+ (to [0-9]+ )?samples per pixel.* in .*|error of a tile: .*");
   std::vector<std::string> lines;
   std::istringstream in(err);
   for (std::string line; std::getline(in, line);)

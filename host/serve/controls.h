@@ -12,6 +12,8 @@ namespace wale {
 struct EditorSettings {
   std::string lit = "scene";  ///< scene, front, back, both: which side of the cloth the lamps are on
   double goal = 0.05;         ///< error of a tile at which the picture is done (host/tile_error.h)
+
+  bool operator==(const EditorSettings&) const = default;
 };
 
 /// One control of the page: what it is called, the scene's value behind it, and which overrides set it.
@@ -29,7 +31,8 @@ struct Control {
   std::function<std::vector<std::string>(double number, const std::string& text)> set{};  ///< overrides
 };
 
-/// The controls of a scene, in the order in which they are shown: one table, in control_table.h and the files of its rows.
+/// The controls of a scene, in the order in which they are shown: one table, in control_table.h and the files of its
+/// rows.
 std::vector<Control> controls_of(const EditedScene& scene, const EditorSettings& settings);
 
 /// Overrides that set a control to a value from the page. Throws a user error that names the control when the value is

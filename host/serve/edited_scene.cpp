@@ -152,11 +152,12 @@ void EditedScene::confirm(uint64_t version, std::vector<std::string> edits) {
   if (version <= version_) good_ = std::move(edits);
 }
 
-void EditedScene::withdraw(uint64_t version) {
-  if (version != version_) return;
+bool EditedScene::withdraw(uint64_t version) {
+  if (version != version_ || edits_ == good_) return false;
   take(good_);
   if (!past_.empty()) past_.pop_back();
   gesture_.clear();
+  return true;
 }
 
 std::string EditedScene::command(const std::vector<std::string>& more, const std::string& goal) const {

@@ -39,8 +39,9 @@ class EditedScene {
 
   /// This version could be knitted and rendered: withdraw() goes back to it.
   void confirm(uint64_t version, std::vector<std::string> edits);
-  /// It could not: where it still is the newest, the edits are those that were confirmed last.
-  void withdraw(uint64_t version);
+  /// It could not: where it still is the newest, the edits are those that were confirmed last. False, and nothing done,
+  /// where they are that already.
+  bool withdraw(uint64_t version);
 
   /// The scene with more overrides, which are not kept.
   Scene scene_with(const std::vector<std::string>& more) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "geom/error.h"
 #include "host/display_picture.h"
@@ -167,13 +168,17 @@ HttpReply EditorSession::picture(int view) {
   return reply;
 }
 
-// Under the lock.
 EditorSession::Version EditorSession::newest() {
   const std::lock_guard lock(mutex_);
-  Version version{revision_, edited_.version(), edited_.edits(), {}, control_, settings_.goal};
-  for (const EditorView& view : editor_views(edited_, settings_, camera())) {
-    version.scenes.push_back(view.more.empty() ? edited_.scene() : edited_.scene_with(view.more));
-    fit(version.scenes.back().film, options_.width, options_.height);
+  Version version{revision_, edited_.version(), edited_.edits(), settings_, control_};
+  try {
+    for (const EditorView& view : editor_views(edited_, settings_, camera())) {
+      version.scenes.push_back(view.more.empty() ? edited_.scene() : edited_.scene_with(view.more));
+      fit(version.scenes.back().film, options_.width, options_.height);
+    }
+  } catch (const Error& error) {  // a file that it names has gone
+    if (error.fault() != wale::Fault::user) throw;
+    version.fault = error.what();
   }
   return version;
 }
@@ -206,18 +211,26 @@ void EditorSession::publish_picture(size_t view, const Version& version, Progres
   shown_[view] = std::move(shown);
 }
 
-// The version before it stays on the device and, where nobody has edited on, in the document.
-void EditorSession::refuse(const Version& version, const std::string& line) {
+// The version shown before it is the newest again, where nobody has edited on. False where this is that version: its
+// files have changed, and nothing can be shown until the next edit.
+bool EditorSession::refuse(const Version& version, const std::string& line) {
+  bool another = true;
   {
     const std::lock_guard lock(mutex_);
     if (revision_ == version.revision) {
-      edited_.withdraw(version.scene);
-      ++revision_;
+      another = std::exchange(settings_, good_settings_) != good_settings_;
+      try {
+        another |= edited_.withdraw(version.scene);
+      } catch (const Error& error) {  // what was shown cannot be read any more
+        if (error.fault() != wale::Fault::user) throw;
+      }
+      revision_ += another;
       fault_ = RefusedEdit{version.control, line};
       dirty_ = true;
     }
   }
   publish_state(true);
+  return another;
 }
 
 // It is what the views show.
@@ -226,6 +239,7 @@ void EditorSession::confirm(const Version& version) {
   for (size_t v = version.scenes.size(); v < shown_.size(); ++v) feed_.forget(fmt::format("picture.{}", v));
   shown_.resize(version.scenes.size());
   edited_.confirm(version.scene, version.edits);
+  good_settings_ = version.settings;
 }
 
 bool EditorSession::newer_than(const Version& version) const {
@@ -237,19 +251,23 @@ void EditorSession::run(std::span<const Device> device, const Loaders& loaders,
                         const std::function<bool()>& stop_asked) {
   LiveViews views(device, loaders, options_.kernel_dir);
   Version version;     // revision 0: none yet
-  uint64_t shown = 0;  // revision that the views are of
+  uint64_t shown = 0;  // revision that the views are of; 0 = none, as files that they need have changed
   Redone redone;
   uint64_t told = 0;  // samples that were not finite
   const auto publish_cost = [&](const std::string& status, const Version& of) {
     feed_.publish("cost", "application/json",
-                  cost_message(status, of.revision, of.goal, views, redone, feed_.viewers()));
+                  cost_message(status, of.revision, of.settings.goal, views, redone, feed_.viewers()));
+  };
+  const auto wait = [&] {
+    std::unique_lock lock(mutex_);
+    if (revision_ == version.revision && !stop_) wake_.wait_for(lock, kIdle);
   };
   while (!stop_asked() && !stopped()) {
     publish_state(false);
     if (newer_than(version)) {
       Version next = newest();
       const bool first = version.revision == 0;
-      if (shown == version.revision && traced(next.scenes) == traced(version.scenes)) {
+      if (shown == version.revision && next.fault.empty() && traced(next.scenes) == traced(version.scenes)) {
         version = std::move(next);
         shown = version.revision;
         confirm(version);
@@ -260,10 +278,12 @@ void EditorSession::run(std::span<const Device> device, const Loaders& loaders,
       }
       publish_cost(first ? "starting" : "changing", next);
       try {
+        if (!next.fault.empty()) user_error("{}", next.fault);
         redone = views.show(next.scenes);
       } catch (const Error& error) {
         if (error.fault() != wale::Fault::user || first) throw;
         version.revision = next.revision;  // refuse() makes another one when nobody else did
+        shown = 0;
         refuse(next, error.what());
         continue;
       }
@@ -276,19 +296,29 @@ void EditorSession::run(std::span<const Device> device, const Loaders& loaders,
       }
       confirm(version);
     }
-    const auto view = views.next(version.goal);
+    if (shown != version.revision) {
+      wait();
+      continue;
+    }
+    const auto view = views.next(version.settings.goal);
     if (!view) {
       publish_cost("done", version);
-      std::unique_lock lock(mutex_);
-      if (revision_ == version.revision && !stop_) wake_.wait_for(lock, kIdle);
+      wait();
       continue;
     }
     bool due = false;
-    while (!due && !newer_than(version) && !stop_asked()) due = views.step(*view);
+    try {
+      while (!due && !newer_than(version) && !stop_asked()) due = views.step(*view);
+    } catch (const Error& error) {  // two views take turns on the device, and files are read anew
+      if (error.fault() != wale::Fault::user) throw;
+      shown = 0;
+      refuse(version, error.what());
+      continue;
+    }
     if (!due) continue;
     publish_picture(*view, version, views.render(*view));
     publish_cost("rendering", version);
-    if (const uint64_t now = views.progress(version.goal).not_finite_since_start; now > told) {
+    if (const uint64_t now = views.progress(version.settings.goal).not_finite_since_start; now > told) {
       if (told == 0 || now >= 2 * told) {  // a line each time that it has doubled
         fmt::print(stderr, "wale: render: {} samples so far were not finite; the pictures are without them\n", now);
         told = now;
@@ -296,7 +326,7 @@ void EditorSession::run(std::span<const Device> device, const Loaders& loaders,
     }
   }
   stop();
-  if (const uint64_t count = views.progress(version.goal).not_finite_since_start)
+  if (const uint64_t count = views.progress(version.settings.goal).not_finite_since_start)
     bug("render: {} samples were not finite; the pictures were shown without them", count);
 }
 

@@ -42,9 +42,10 @@ class EditorSession {
   struct Version {
     uint64_t revision = 0, scene = 0;
     std::vector<std::string> edits;
-    std::vector<Scene> scenes;  ///< one a view
-    std::string control;        ///< that asked for it last
-    double goal = 0;
+    EditorSettings settings{};
+    std::string control{};        ///< that asked for it last
+    std::vector<Scene> scenes{};  ///< one a view
+    std::string fault{};          ///< why there are none
   };
 
   HttpReply changed(const std::function<void()>& change, const std::string& control);
@@ -59,7 +60,7 @@ class EditorSession {
   void publish_state(bool now);
   void publish_picture(size_t view, const Version& version, ProgressiveRender& render);
   void confirm(const Version& version);
-  void refuse(const Version& version, const std::string& line);
+  bool refuse(const Version& version, const std::string& line);
 
   EditorOptions options_;
   ViewerFeed feed_;
@@ -67,7 +68,7 @@ class EditorSession {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   EditedScene edited_;
-  EditorSettings settings_;
+  EditorSettings settings_, good_settings_;  ///< the latter of the version that was shown last
   uint64_t revision_ = 1;
   std::string control_;               ///< that asked last
   std::optional<RefusedEdit> fault_;  ///< of the last version that could not be made

@@ -41,7 +41,8 @@ class LiveViews {
 
   /// The view to go on with; nothing when all have reached the goal, or the most samples.
   std::optional<size_t> next(double goal) const;
-  /// Traces one wave of a view. True when its picture is worth showing again.
+  /// Traces one wave of a view. True when its picture is worth showing again. Throws what LiveScene::apply() does, as
+  /// the views take turns on the device; show() must then be called again.
   bool step(size_t view);
   ViewsProgress progress(double goal) const;
 

@@ -56,6 +56,7 @@ TEST_F(CliFrames, AreMadeOnceAndKept) {
   const Outcome again = run_wale(frames("0..2", {"-o", at("f_##.png")}));
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_TRUE(contains(again.err, "2 of 3 frames are finished and kept"));
+  EXPECT_TRUE(contains(again.err, "check ")) << "of many frames that takes a while";
   EXPECT_EQ(std::filesystem::last_write_time(folder_ / "f_01.exr"), written);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "f_02.png"));
   EXPECT_TRUE(contains(run_wale(frames("0..2")).err, "all 3 frames are finished"));
@@ -138,6 +139,8 @@ TEST_F(CliFrames, GoOnAfterAKill) {
   for (int n = 0; n < 4; ++n)
     EXPECT_TRUE(same_picture(folder_ / fmt::format("f_{:02}.exr", n), folder_ / fmt::format("whole_{:02}.exr", n)))
         << n;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+    EXPECT_NE(entry.path().filename().string()[0], '.') << "left by the one that was killed: " << entry.path();
 }
 
 TEST_F(CliFrames, AreWholeAfterAStop) {
@@ -205,6 +208,7 @@ TEST_F(CliFrames, ThatAreDamagedEndTheRenderOrAreHeld) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "f_01.exr"));
   const Outcome nan = run_wale(frames("3"));
   EXPECT_EQ(nan.status, 1);
+  EXPECT_TRUE(contains(nan.err, "frame 3: ")) << nan.err;
   EXPECT_TRUE(contains(nan.err, "c_03.obj"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "f_03.exr"));
   moving_scene(R"(, "missing": "hold")");
@@ -214,12 +218,84 @@ TEST_F(CliFrames, ThatAreDamagedEndTheRenderOrAreHeld) {
   EXPECT_EQ(read_image(folder_ / "f_03.exr").pixels, read_image(folder_ / "f_01.exr").pixels);
 }
 
+// Props and lights that move by files of frames.
+TEST_F(CliFrames, OfPropsAndLightsAreSeenHashedAndMissed) {
+  const auto write_piece = [&](const char* name, int n, double x, double z) {
+    BaseMesh mesh = make_swatch(0.008, 0.008, 3, 3);
+    for (dvec3& p : mesh.position) p += dvec3(x, 0, z);
+    write_obj(mesh, folder_ / fmt::format("{}_{}.obj", name, n));
+  };
+  for (int n = 0; n < 3; ++n) write_piece("prop", n, -0.01 + 0.01 * n, 0.005), write_piece("lamp", n, 0.004 * n, 0.05);
+  write_scene(R"({"generator": "swatch", "width": 20, "height": 20, "nu": 4, "nv": 4})",
+              R"({"builtin": "stockinette"})", R"("gauge": {"wales": 30})",
+              R"(, "objects": [{"type": "mesh", "name": "prop", "mesh": {"frames": "prop_#.obj"}}],
+                  "lights": [{"type": "mesh", "name": "lamp", "mesh": {"frames": "lamp_#.obj"}, "intensity": 20}])");
+  ASSERT_EQ(run_wale(frames("0..2")).status, 0);
+  // Each frame is what the meshes of its number would show alone.
+  for (const int n : {0, 2}) {
+    const Outcome still = run_wale({"render", scene_, "-o", at("still.exr"), "--spp", "8", "--set",
+                                    fmt::format("objects.prop.mesh=prop_{}.obj", n), "--set",
+                                    fmt::format("lights.lamp.mesh=lamp_{}.obj", n)});
+    ASSERT_EQ(still.status, 0) << still.err;
+    EXPECT_EQ(read_image(folder_ / fmt::format("f_{:02}.exr", n)).pixels, read_image(folder_ / "still.exr").pixels)
+        << n;
+  }
+  const std::string first = file_text(folder_ / "f_00.exr");
+  for (const char* name : {"prop", "lamp"}) {
+    write_piece(name, 1, 0.002, 0.006);
+    EXPECT_TRUE(contains(refused(frames("0..2")), "wale: f_01.exr: not this frame of this scene")) << name;
+    ASSERT_EQ(run_wale(frames("0..2", {"--redo"})).status, 0) << name;
+    EXPECT_EQ(file_text(folder_ / "f_00.exr"), first) << "other frames are kept";
+  }
+  for (const char* name : {"prop", "lamp"}) {
+    std::filesystem::rename(folder_ / fmt::format("{}_1.obj", name), folder_ / "away.obj");
+    EXPECT_EQ(refused(frames("0..2")),
+              fmt::format("wale: frame 1: {}_1.obj is not there; there are 0 to 2 without 1", name));
+    std::filesystem::rename(folder_ / "away.obj", folder_ / fmt::format("{}_1.obj", name));
+  }
+}
+
+// Samples that are not finite are counted by the scene on the device: those of frames and moments that have left it
+// are told too.
+TEST_F(CliFrames, ThatAreNotFiniteAreToldAtTheEnd) {
+  std::filesystem::copy(std::filesystem::path(WALE_SOURCE_DIR) / "kernels", folder_ / "kernels",
+                        std::filesystem::copy_options::recursive);
+  std::string text = file_text(folder_ / "kernels/stages/accumulate.cl");
+  const std::string place = "    value.w = 1.0f;\n";
+  ASSERT_NE(text.find(place), std::string::npos);
+  text.insert(text.find(place) + place.size(), "    if (camera.origin.z < 0.065f && x % 8 == 0) value.x = NAN;\n");
+  folder_.write("kernels/stages/accumulate.cl", text);
+  const auto scene = [&](const std::string& shutter) {
+    write_scene(
+        R"({"generator": "swatch", "width": 20, "height": 20, "nu": 4, "nv": 4})", R"({"builtin": "stockinette"})",
+        R"("gauge": {"wales": 30})",
+        R"(, "animation": {)" + shutter + R"("keys": {"camera.position": [[0, [0, 0, 60]], [1, [0, 0, 70]]]}})");
+  };
+  const auto told = [&](const std::string& range, const std::string& count) {
+    const Outcome run = run_wale(frames(range, {"--kernel-dir", at("kernels"), "--redo"}));
+    EXPECT_EQ(run.status, 3) << run.err;
+    EXPECT_TRUE(contains(run.err, "wale: render: " + count + " samples were not finite; the pictures were written"));
+    for (const float v : read_image(folder_ / "f_00.exr").pixels) ASSERT_TRUE(std::isfinite(v));
+  };
+  scene("");
+  told("0..1", "256");  // two of 16 columns, 16 rows, 8 samples: of the first frame alone
+  scene(R"("shutter": 1, "shutter_steps": 4, )");
+  told("0", "128");  // the first two of four moments
+}
+
 TEST_F(CliFrames, AreSaidInOneWay) {
   write_frames(2);
   moving_scene();
   EXPECT_EQ(
       refused({"render", scene_, "-o", at("f.exr"), "--frames", "0..1"}),
       "wale: f.exr: 2 frames cannot share a name; write # for each digit of their number, for example f_####.exr");
+  const std::string twice = ": would be written twice; give each output a name of its own";
+  EXPECT_EQ(refused(frames("0..1", {"-o", at("f_##.exr")})), "wale: f_00.exr" + twice);
+  EXPECT_EQ(refused(frames("0..12", {"-o", at("./f_#.exr")})), "wale: ./f_10.exr" + twice);
+  EXPECT_EQ(refused(frames("1..11", {"-o", at("f_1#.exr")})), "wale: f_11.exr" + twice);
+  EXPECT_EQ(refused({"render", scene_, "-o", at("f.exr"), "-o", at("f.exr")}), "wale: f.exr" + twice);
+  EXPECT_EQ(refused({"render", scene_, "-o", at("f.exr"), "--frames", ""}),
+            "wale: --frames: the value is empty; for example 0..47 (see `wale --help`)");
   EXPECT_EQ(refused({"render", scene_, "-o", at("f.exr"), "--redo"}),
             "wale: --redo: of an animation; give --frames too, for example --frames 0..47");
   EXPECT_EQ(refused({"render", scene_, "-o", at("nowhere/f_##.exr"), "--frames", "0..1"}),

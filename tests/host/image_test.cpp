@@ -268,6 +268,42 @@ TEST(AtomicFile, NothingIsLeftWithoutCommit) {
   EXPECT_EQ(file_text(folder / "a.txt"), "new");
 }
 
+// What a writer that was killed has left goes with the next writing of the same file; all else stays.
+TEST(AtomicFile, WhatAKilledWriterLeftIsRemovedByTheNext) {
+  TemporaryFolder folder;
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    new AtomicFile(folder / "a.txt");
+    new AtomicFile(folder / "b.txt");
+    ::_exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_EQ(folder.files(), 2u) << "both of the killed writer";
+  const auto left = [&](const char* begin) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+      if (entry.path().filename().string().starts_with(begin)) return entry.path().filename().string();
+    return std::string();
+  };
+  // Of a writer that lives, of one on another machine, and what only looks like one.
+  const std::string dead = left(".a."), number = fmt::format(".{}.", child);
+  const size_t at = dead.find(number);
+  ASSERT_NE(at, std::string::npos) << dead;
+  const std::string rest = dead.substr(at + number.size());
+  const std::string alive = fmt::format("{}.{}.{}", dead.substr(0, at), ::getppid(), rest);
+  const std::string other_end = dead.substr(0, dead.size() - 4) + ".json",
+                    more = dead.substr(0, at) + ".x" + dead.substr(at);
+  std::string elsewhere = dead;
+  elsewhere[3] = elsewhere[3] == '0' ? '1' : '0';
+  for (const std::string& name : {alive, elsewhere, other_end, more}) folder.write(name, "kept");
+  write_text_file(folder / "a.txt", "new");
+  EXPECT_FALSE(std::filesystem::exists(folder / dead));
+  EXPECT_EQ(folder.files(), 1 + 1 + 4u) << "a.txt, what was left of b.txt, and the four";
+  write_text_file(folder / "b.txt", "new");
+  EXPECT_EQ(left(".b."), "");
+}
+
 TEST(AtomicFile, FullDiskIsReportedAndLeavesNothing) {
   TemporaryFolder folder;
   const std::string text(100000, 'x');

@@ -109,6 +109,25 @@ TEST(AnimatedScene, AnyValueFollowsItsKeys) {
   EXPECT_DOUBLE_EQ(scene(keys, {"animation.frame=2.5"}).camera.position.x, 0.0025);
 }
 
+TEST(AnimatedScene, WholeNumbersBetweenKeysAreRounded) {
+  const std::string keys = R"({"keys": {"fabrics.cloth.yarn.plies": [[0, 2], [10, 4]],
+    "film.size": [[0, [100, 50]], [3, [101, 60], "smooth"], [6, [201, 61]]], "integrator.lanes": [[0, 1], [10, 8, "hold"]]}})";
+  const std::vector<std::string> lanes = {"integrator.lanes=0"};
+  const auto at = [&](double frame) { return scene(keys, {fmt::format("animation.frame={}", frame), lanes[0]}); };
+  EXPECT_EQ(at(2.4).fabrics[0].spec.plies, 2);
+  EXPECT_EQ(at(2.6).fabrics[0].spec.plies, 3);
+  EXPECT_EQ(at(7.6).fabrics[0].spec.plies, 4);
+  EXPECT_EQ(at(2).film.width, 101);
+  EXPECT_EQ(at(2).film.height, 57);
+  EXPECT_EQ(at(4.5).film.width, 151);
+  EXPECT_EQ(user_message([&] { scene(keys, {"animation.frame=5"}); }),
+            "scene.json:2:103: integrator.lanes: the number 4.5 is not valid; valid: 0, 1, 8, 16; nothing lies between "
+            "them, write the keys with \"hold\"");
+  // What is written with a fraction is still refused, in a key as elsewhere.
+  EXPECT_NE(refusal(R"({"keys": {"fabrics.cloth.yarn.plies": [[0, 2.5]]}})").find("a whole number is needed here"),
+            std::string::npos);
+}
+
 TEST(AnimatedScene, WhatIsSetGoesBeforeKeys) {
   const std::string keys = R"({"keys": {"lights.sky.intensity": [[0, 1], [10, 3]]}})";
   EXPECT_DOUBLE_EQ(scene(keys, {"animation.frame=10", "lights.sky.intensity=7"}).lights[0].radiance[0], 7);

@@ -1,4 +1,6 @@
 // Samples that are not finite are counted, told and end the editor with a fault; a picture without them is still shown.
+#include <unistd.h>
+
 #include "host/json_document.h"
 #include "host/serve/http_server.h"
 #include "tests/host/serve_client.h"
@@ -44,6 +46,66 @@ TEST_F(ServeFault, SamplesThatAreNotFiniteAreTold) {
   EXPECT_EQ(served.post("/stop", "{}").status, 200);
   EXPECT_EQ(served.process().wait(30), 3);
   EXPECT_TRUE(contains(served.process().err(), "samples were not finite; the pictures were shown without them"));
+}
+
+// A file of the scene is damaged while the editor runs: the fault is told, the editor stays, and when the file is whole
+// again an edit goes on.
+TEST_F(ServeFault, ADamagedFileIsToldAndSurvived) {
+  if (!has_http_library()) GTEST_SKIP() << "built without cpp-httplib";
+  const std::string whole = "v -9 -9 -2\nv 9 -9 -2\nv 0 9 -2\nf 1 2 3\n";
+  folder_.write("prop.obj", whole);
+  write_scene(R"({"generator": "swatch", "width": 20, "height": 20, "nu": 4, "nv": 4})",
+              R"({"builtin": "stockinette"})", R"("gauge": {"wales": 30})",
+              R"(, "objects": [{"type": "mesh", "mesh": "prop.obj"}],
+ "lights": [{"type": "sphere", "position": [0, 0, 50], "radius": 5, "radiance": 50}])");
+  Served served(folder_.path(), {scene_, "--quiet", "--size", "32x32"});
+  ASSERT_TRUE(served.up()) << served.process().err();
+  const auto revision = [&] {
+    const std::string state = served.ask("GET", "/state").body;
+    const size_t begin = state.find("\"revision\": ");
+    return begin == std::string::npos ? -1 : std::stoi(state.substr(begin + 12));
+  };
+  const auto rendering = [&] {
+    return !served.watch(fmt::format("\"status\": \"rendering\", \"revision\": {}, \"samples\": 2,", revision()), 60)
+                .empty();
+  };
+  const auto told = [&](const char* text) {
+    for (int i = 0; i < 600; ++i) {
+      const std::string state = served.ask("GET", "/state").body;
+      const size_t begin = state.find("\"fault\": {");
+      if (begin != std::string::npos &&
+          state.substr(begin, state.find('}', begin) - begin).find(text) != std::string::npos)
+        return true;
+      ::usleep(50000);
+    }
+    return false;
+  };
+  ASSERT_EQ(served.post("/edit", R"({"set": ["film.exposure=1"]})").status, 200);
+  ASSERT_TRUE(rendering());
+  // While two views take turns on the device.
+  ASSERT_EQ(served.post("/control", R"({"control": "view.goal", "value": "0.01"})").status, 200);
+  ASSERT_EQ(served.post("/control", R"({"control": "view.lit", "value": "both"})").status, 200);
+  ASSERT_TRUE(rendering());
+  folder_.write("prop.obj", "no mesh");
+  EXPECT_TRUE(told("prop.obj: not a mesh")) << served.ask("GET", "/state").body << served.process().err();
+  const int then = revision();
+  // An edit is refused as the file is read for it; what was edited before stays, and nothing is tried again and again.
+  EXPECT_EQ(served.post("/edit", R"({"set": ["film.exposure=1", "camera.fov=30"]})").status, 200);
+  EXPECT_TRUE(told("prop.obj: not a mesh"));
+  ::usleep(300000);
+  EXPECT_LE(revision(), then + 2);
+  EXPECT_TRUE(contains(served.ask("GET", "/state").body, "\"edits\": [\"film.exposure=1\"]"));
+  EXPECT_TRUE(contains(served.ask("GET", "/state").body, "\"can_undo\": true"));
+  std::filesystem::remove(folder_ / "prop.obj");  // now the schema misses it
+  EXPECT_EQ(served.post("/edit", R"({"set": ["camera.fov=31"]})").status, 400);
+  EXPECT_EQ(served.post("/control", R"({"control": "view.lit", "value": "back"})").status, 200);
+  EXPECT_TRUE(told("no file"));
+  folder_.write("prop.obj", whole);
+  EXPECT_EQ(served.post("/edit", R"({"set": ["camera.fov=32"]})").status, 200);
+  EXPECT_TRUE(rendering());
+  EXPECT_TRUE(contains(served.ask("GET", "/state").body, "\"fault\": null"));
+  EXPECT_EQ(served.post("/stop", "{}").status, 200);
+  EXPECT_EQ(served.process().wait(30), 0);
 }
 
 }  // namespace

@@ -147,6 +147,18 @@ class Picture:
 
         return max((3 + 0.1 * k for k in range(270)), key=lambda f: sum(power(f * m) for m in (1, 2) if f * m < n / 2))
 
+    def tone(self, cycles):
+        """Amplitude of so many cycles across the picture, of the largest within a tenth, in steps of 1 / 255."""
+        n, mean = len(self.columns), sum(self.columns) / len(self.columns)
+        windowed = [(v - mean) * (0.5 - 0.5 * math.cos(2 * math.pi * (i + 0.5) / n)) for i, v in enumerate(self.columns)]
+
+        def amplitude(f):
+            re = sum(v * math.cos(2 * math.pi * f * i / n) for i, v in enumerate(windowed))
+            im = sum(v * math.sin(2 * math.pi * f * i / n) for i, v in enumerate(windowed))
+            return 4 * math.hypot(re, im) / n
+
+        return max(amplitude(cycles * (0.9 + 0.02 * k)) for k in range(11))
+
     def shift(self, before, horizontal):
         """Pixels by which this is `before` moved to the right or down, at most a tenth of the picture."""
         a, b = (before.columns, self.columns) if horizontal else (before.rows, self.rows)
@@ -279,9 +291,25 @@ def main():
         another = lambda n: (True, "")
         crosswise = lambda factor: lambda n: figure(n.stitches(), stitches, lambda v, r: abs(v / (factor * r) - 1) < 0.08)
         nearer = math.tan(math.radians(10)) / math.tan(math.radians(6))
+        segments = lambda: int(page.run("document.getElementById('segments').textContent.replaceAll(',', '')"))
+        few = segments()
+        # Ribs are that many stitches wide: what a plain cloth has there is noise.
+        ribs = lambda wide: lambda n: figure(n.tone(stitches / wide), base.tone(stitches / wide), lambda v, r: v > 5 * r)
+
+        # What a preset costs is seen in its segments; paths that end early, and shadows without what plies let pass,
+        # leave light out.
+        def preset(light, pieces):
+            def says(n):
+                (bright, a), (many, b) = figure(n.light, base.light, light), figure(segments(), few, pieces)
+                return bright and many, f"light {a}, segments {b}"
+            return says
+
+        cheaper = preset(lambda v, r: 0.8 * r < v < 0.98 * r, lambda v, r: v < 0.8 * r)
+        dearer = preset(lambda v, r: abs(v / r - 1) < 0.01, lambda v, r: v > 1.3 * r)
         checks = [
             (find(".color"), "#1030c0", lambda n: figure(blueness(n), blueness(base), lambda v, r: r < 0 < v), "the hue follows"),
-            ("fabrics.0.pattern", "rib_2x2", another, "another pattern"),
+            ("fabrics.0.pattern", "rib_2x2", ribs(4), "ribs of four stitches"),
+            ("fabrics.0.pattern", "rib_1x1", ribs(2), "ribs of two stitches"),
             (find("gauge.wales"), wales * 0.6, crosswise(0.6), "as many stitches fewer"),
             ("lights.0.intensity", 0.2, darker(0.8), "darker"),
             ("lights.0.position.around", 80, lambda n: figure(n.share(True, True), base.share(True, True), lambda v, r: v < r),
@@ -293,10 +321,10 @@ def main():
             ("film.exposure", 1, brighter(1.2), "brighter"),
             ("film.exposure", -1, darker(0.8), "darker"),
             ("film.view", "srgb", another, "another tone curve"),
-            ("accuracy", "draft", another, "cheaper"),
+            ("accuracy", "draft", cheaper, "fewer segments and less light from bounces"),
+            ("accuracy", "paper", cheaper, "fewer segments and less light from bounces"),
+            ("accuracy", "reference", dearer, "more segments, the same light"),
         ]
-        segments = lambda: int(page.run("document.getElementById('segments').textContent.replaceAll(',', '')"))
-        few = segments()
         # Seen from near by, where a pixel is as small as a fibre, and against the noise of another seed: other paths alone
         # are not taken for another picture.
         near_checks = [

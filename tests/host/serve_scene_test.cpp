@@ -79,6 +79,7 @@ TEST_F(ServeScene, AVersionThatCouldNotBeMadeIsWithdrawn) {
   const uint64_t bad = scene.version();
   scene.withdraw(bad);
   EXPECT_EQ(scene.scene().film.exposure, 1);
+  EXPECT_FALSE(scene.withdraw(scene.version())) << "nothing is left to take back";
   scene.edit({"film.exposure=3"}, "");
   scene.withdraw(bad);
   EXPECT_EQ(scene.scene().film.exposure, 3) << "somebody has edited on";
@@ -114,11 +115,42 @@ TEST_F(ServeScene, NoFrameOutsideOfTheFolderIsNamed) {
   std::filesystem::create_symlink(secret, folder / "link.bin");
   std::filesystem::create_directory_symlink(other.path(), folder / "away");
   scene.edit({R"(fabrics.0.mesh={"frames": "own_#.obj"})"}, "");
-  for (const std::string& name : {(other.path() / "s_#.obj").string(), std::string("half_#.obj"), std::string("link.bin"),
-                                  std::string("away/s_#.obj"), std::string("/etc/host#"), std::string("/nonexistent/#")}) {
+  for (const std::string& name :
+       {(other.path() / "s_#.obj").string(), std::string("half_#.obj"), std::string("link.bin"),
+        std::string("away/s_#.obj"), std::string("/etc/host#"), std::string("/nonexistent/#")}) {
     const std::string set = R"(fabrics.0.mesh={"frames": ")" + name + "\"}";
-    EXPECT_NE(user_message([&] { scene.edit({set}, ""); }).find("lies outside of the scene's folder"), std::string::npos) << set;
+    EXPECT_NE(user_message([&] { scene.edit({set}, ""); }).find("lies outside of the scene's folder"),
+              std::string::npos)
+        << set;
   }
+}
+
+// A folder is looked through again when it has changed, and only then.
+TEST_F(ServeScene, AFolderOfFramesIsLookedThroughWhenItChanges) {
+  TemporaryFolder other;
+  const auto secret = other.write("s_1.obj", "v 0 0 0\n");
+  std::filesystem::create_directory(folder / "frames");
+  folder.write("frames/c_1.obj", "v 0 0 0\n");
+  const auto frames = folder / "frames";
+  const auto long_ago = std::filesystem::last_write_time(frames) - std::chrono::hours(1);
+  std::filesystem::last_write_time(frames, long_ago);
+  FileFence fence(folder.path());
+  fence.close();
+  const auto admitted = [&] { return fence.admits_all(frames / "c_#.obj"); };
+  EXPECT_TRUE(admitted());
+  std::filesystem::create_symlink(secret, frames / "c_2.obj");
+  EXPECT_FALSE(admitted());
+  std::filesystem::last_write_time(frames, long_ago);
+  EXPECT_TRUE(admitted()) << "not looked through again";
+  // A link that leads inside may lead outside tomorrow, without a change of this folder.
+  std::filesystem::remove(frames / "c_2.obj");
+  std::filesystem::create_symlink(folder / "frames/c_1.obj", folder / "inside.obj");
+  std::filesystem::create_symlink(folder / "inside.obj", frames / "c_3.obj");
+  std::filesystem::last_write_time(frames, long_ago - std::chrono::hours(1));
+  EXPECT_TRUE(admitted());
+  std::filesystem::remove(folder / "inside.obj");
+  std::filesystem::create_symlink(secret, folder / "inside.obj");
+  EXPECT_FALSE(admitted());
 }
 
 TEST_F(ServeScene, SavesIntoItsFolderOnlyAndAsks) {

@@ -147,12 +147,13 @@ TEST_F(Animation, ARemeshedClothIsThatOfOneMesh) {
 
 // Samples at moments of the shutter, as the program makes them.
 Rendered blurred(LiveScene& live, const std::function<Scene(double)>& at, double frame, double shutter,
-                 uint32_t moments, int spp, unsigned seed = 0) {
+                 uint32_t moments, int spp, unsigned seed = 0, bool aovs = false) {
   const auto time = [&](uint32_t k) { return frame + shutter * (k + 0.5) / moments; };
   live.apply(at(time(0)));
   RenderOptions options;
   options.spp = spp;
   options.moments = moments;
+  options.aovs = aovs;
   options.at_moment = [&](uint32_t k) {
     live.apply(at(time(k)));
     return Moment{&live.world(), live.devices()};
@@ -217,6 +218,33 @@ TEST_F(Animation, ABlurredClothIsTheMeanOfItsMoments) {
   tests = 0;
   const double first = smallest_p(rendered.image, take(at(0.125), 64, 9).image, tests);
   EXPECT_LT(first, sidak(tolerance::kFamilyP, tests));
+}
+
+// A cloth that leaves the origin of the first moment behind: where it was seen is still the mean of its moments.
+TEST_F(Animation, PositionsOfABlurredClothCountFromOnePlace) {
+  constexpr double kWay = 3;
+  write(sequence(2, [](dvec2 p, double frame) { return dvec3(p, 0) + dvec3(kWay * frame, 0, 0); }),
+        R"("camera.position": [[0, [0, 0, 0.2]], [1, [3, 0, 0.2]]], "camera.look_at": [[0, [0, 0, 0]], [1, [3, 0, 0]]])");
+  live_.apply(at(0.875));
+  const dvec3 last = live_.world().origin;
+  live_.apply(at(0.125));
+  ASSERT_NE(live_.world().origin, last) << "the origin must move for this test";
+  const Image image = blurred(live_, [&](double frame) { return at(frame); }, 0, 1, 4, 16, 0, true).image;
+  const auto channel = [&](const char* name) {
+    return size_t(std::find(image.channels.begin(), image.channels.end(), name) - image.channels.begin());
+  };
+  const size_t x_at = channel("position.X"), y_at = channel("position.Y"), met = channel("coverage");
+  const double pixel = 2 * 0.2 * std::tan(0.5 * 20 * std::numbers::pi / 180) / kPixels;
+  size_t seen = 0;
+  for (int y = 0; y < kPixels; ++y)
+    for (int x = 0; x < kPixels; ++x) {
+      const float* p = image.at(x, y);
+      if (p[met] < 1) continue;  // moments that missed would weigh less
+      ++seen;
+      EXPECT_NEAR(p[x_at], kWay / 2 + (x + 0.5 - kPixels / 2) * pixel, pixel) << x << " " << y;
+      EXPECT_NEAR(p[y_at], -(y + 0.5 - kPixels / 2) * pixel, pixel) << x << " " << y;
+    }
+  EXPECT_GT(seen, 8u);
 }
 
 // One moment is the picture without any.

@@ -75,6 +75,24 @@ TEST_F(EditedScene, RedoesWhatAnEditTouches) {
   EXPECT_FALSE(nothing.fabrics);
 }
 
+// Where fibres lie in a ply takes long to lay out, and most edits leave it.
+TEST_F(EditedScene, LaysOutFibresAnewWhereTheyChangeOnly) {
+  live_.apply(version({}));
+  const std::string material = live_.scene().materials[size_t(live_.scene().fabrics[0].material)].name;
+  const auto section = [&] { return live_.world().fibres.made.at(0).detail; };
+  const auto before = section();
+  for (const std::string& same : {"materials." + material + ".color=[0.1,0.5,0.9]", std::string("camera.fov=20"),
+                                  std::string("fabrics.0.gauge.wales=24"), std::string("lights.0.intensity=2")}) {
+    live_.apply(version({same}));
+    EXPECT_EQ(section(), before) << same;
+  }
+  const std::string fewer = "materials." + material + ".fibres.count=20";
+  live_.apply(version({fewer}));
+  EXPECT_NE(section(), before);
+  EXPECT_EQ(section()->section().fibres.size(), 20u);
+  expect_that_of({fewer});
+}
+
 TEST_F(EditedScene, AnyRowOfEditsEndsInThePictureOfTheLast) {
   std::mt19937 random(7);
   const std::vector<std::vector<std::string>> values = {
