@@ -92,7 +92,11 @@ Answer answer(const Hidden& hidden, int side, int samples, int final_samples, Fi
   start.fibre_twist = 0;
   Fit fit(scene, renderer, [&](const PicturePair& pair) { return loss.residuals(pair); }, settings);
   Answer out;
-  out.result = *fit.run(out.journal, [] { return false; }, {});
+  const bool tell = std::getenv("WALE_FIT_STEPS") != nullptr;
+  out.result = *fit.run(out.journal, [] { return false; }, [&](const FitProgress& p) {
+    const FitStep& step = p.journal->steps.back();
+    if (tell) fmt::print(stderr, "{} {:.0f} s: {:.5g}{}\n", step.start, step.seconds, step.loss, p.better ? " *" : "");
+  });
   Residuals at;
   for (const uint32_t seed : {500u, 501u})
     at.replicates.push_back({loss.residuals(renderer.render(truth, final_samples, seed))});
@@ -126,7 +130,7 @@ TEST(FitKnownAnswer, OneMaterial) { expect_found(answer(kHidden[0], 48, 16, 256,
 
 TEST(FitKnownAnswer, FourMaterials) {
   if (!long_tests()) GTEST_SKIP() << "some minutes: WALE_LONG_TESTS=1";
-  for (const Hidden& hidden : kHidden) expect_found(answer(hidden, 102, 32, 256, FitMethod::paths, 3), hidden.name);
+  for (const Hidden& hidden : kHidden) expect_found(answer(hidden, 102, 32, 128, FitMethod::paths, 1), hidden.name);
 }
 
 }  // namespace
