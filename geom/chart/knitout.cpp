@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "geom/chart/knitout_needle.h"
 #include "geom/chart/repeat_unit.h"
 #include "geom/chart/stitch_chart.h"
 #include "geom/error.h"
@@ -16,28 +17,8 @@ namespace wale {
 namespace {
 
 constexpr size_t kMostCells = 1'000'000;
-constexpr int kMostNeedles = 10000;
 constexpr size_t kMostCarriers = 26;  // yarns of a chart are letters
 constexpr size_t kMostLoops = 3;      // on a needle: no decrease of a chart takes more
-
-// Order along the beds: number, front before back.
-struct Needle {
-  int number = 0;
-  bool back = false;
-  auto operator<=>(const Needle&) const = default;
-};
-
-std::optional<Needle> needle_of(std::string_view word) {
-  if (word.size() < 2 || (word[0] != 'f' && word[0] != 'b')) return std::nullopt;
-  const bool negative = word[1] == '-';
-  int value = 0;
-  for (const char c : word.substr(negative ? 2 : 1)) {
-    if (c < '0' || c > '9' || value > kMostNeedles) return std::nullopt;
-    value = 10 * value + (c - '0');
-  }
-  if (word.size() == 2 && negative) return std::nullopt;
-  return Needle{negative ? -value : value, word[0] == 'b'};
-}
 
 struct Held {
   int wale = 0;     // of the row below
@@ -221,8 +202,6 @@ class Machine {
     double rack = 0;
     std::map<Needle, Op> ops;
   };
-
-  static std::string needle_text(Needle n) { return fmt::format("{}{}", n.back ? 'b' : 'f', n.number); }
 
   ChartCell cell(Needle needle, const std::vector<Held>& loops, int& taken, const Pass& pass) const {
     const auto op = pass.ops.find(needle);
