@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <charconv>
 #include <chrono>
 #include <nlohmann/json.hpp>
 
@@ -15,6 +16,18 @@ namespace {
 
 constexpr double kPerMetre = 1e3, kTenCentimetres = 0.1;
 
+// std::sscanf would read 0x0 as a hexadecimal number.
+dvec2 period_of(const std::string& text) {
+  dvec2 mm(0);
+  const char* const end = text.data() + text.size();
+  const auto width = std::from_chars(text.data(), end, mm.x);
+  if (width.ec == std::errc() && width.ptr != end && *width.ptr == 'x') {
+    const auto height = std::from_chars(width.ptr + 1, end, mm.y);
+    if (height.ec == std::errc() && height.ptr == end) return mm / kPerMetre;
+  }
+  user_error("--period {}: expected WIDTHxHEIGHT in millimetres, for example 8.4x5.2", one_line(text));
+}
+
 std::string reached_text(const KnittedTile& tile) {
   const Relaxed& r = tile.relaxed;
   return fmt::format(
@@ -24,15 +37,35 @@ std::string reached_text(const KnittedTile& tile) {
       r.steps, 100 * r.thickness_share, r.force, r.period_force, tile.force_wanted, r.closest);
 }
 
-void refuse_if_not_reached(const KnitArgs& args, const KnittedTile& tile) {
+// Why it ended, and the nearest thing to try.
+std::pair<std::string, const char*> reason(const KnitSettings& settings, const KnittedTile& tile) {
+  switch (tile.relaxed.end) {
+    case RelaxEnd::time:
+      return {fmt::format("the {:g} s of --seconds are over", settings.max_seconds),
+              settings.starts > 1 ? "more --seconds or fewer --starts may do" : "more --seconds may do"};
+    case RelaxEnd::steps:
+      return {fmt::format("the {} --steps are done", settings.max_steps), "more of them may do"};
+    case RelaxEnd::jammed:
+      return {fmt::format("the yarn jams (stretched by {:.1f} %)", 100 * tile.relaxed.strain),
+              tile.strain_missed ? "leave --strains out"
+              : settings.period  ? "a larger --period or a longer --loop may do"
+              : settings.wales   ? "fewer --wales may do"
+              : settings.courses ? "fewer --courses may do"
+                                 : "a longer --loop may do"};
+    default:
+      return {"no step leads on", "a finer --step may do"};
+  }
+}
+
+void refuse_if_not_reached(const KnitArgs& args, const KnitSettings& settings, const KnittedTile& tile) {
   const std::string chart = args.chart.string();
   if (tile.stopped) user_error("{}: stopped, nothing is written: {}", chart, reached_text(tile));
+  const auto [why, advice] = reason(settings, tile);
   if (tile.strain_missed)
-    user_error("{}: could not be relaxed at strains {:g} x {:g}, nothing is written: {}; leave --strains out", chart,
-               tile.strain_missed->x, tile.strain_missed->y, reached_text(tile));
+    user_error("{}: could not be relaxed at strains {:g} x {:g}, nothing is written: {}; {}; {}", chart,
+               tile.strain_missed->x, tile.strain_missed->y, why, reached_text(tile), advice);
   if (!tile.relaxed.converged)
-    user_error("{}: could not be relaxed, nothing is written: {}; a longer loop or a finer step may do", chart,
-               reached_text(tile));
+    user_error("{}: could not be relaxed, nothing is written: {}; {}; {}", chart, why, reached_text(tile), advice);
   if (!tile.gauge_reached)
     user_error(
         "{}: no loop length gives this gauge; the nearest is {:.2f} wales and {:.2f} courses per 10 cm, with "
@@ -102,13 +135,7 @@ int run_knit(const KnitArgs& args) {
   require_writable_path(args.output);
   if (!args.json.empty() && args.json != "-") require_writable_path(args.json);
   KnitSettings settings = args.settings;
-  if (!args.period.empty()) {
-    dvec2 mm(0);
-    int end = 0;
-    if (std::sscanf(args.period.c_str(), "%lfx%lf%n", &mm.x, &mm.y, &end) != 2 || size_t(end) != args.period.size())
-      user_error("--period {}: expected WIDTHxHEIGHT in millimetres, for example 8.4x5.2", args.period);
-    settings.period = mm / kPerMetre;
-  }
+  if (!args.period.empty()) settings.period = period_of(args.period);
   if (args.loop_diameters > 0) settings.loop_length = args.loop_diameters * settings.yarn_thickness;
   catch_stop_signals();
   const auto start = std::chrono::steady_clock::now();
@@ -119,7 +146,7 @@ int run_knit(const KnitArgs& args) {
   });
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!tile.stopped) bar.finish(tile.relaxed.converged ? "" : "not relaxed");
-  refuse_if_not_reached(args, tile);
+  refuse_if_not_reached(args, settings, tile);
   write_pattern_json(tile.pattern, args.output);
   if (args.json == "-")
     fmt::print("{}", report_json(tile, seconds));

@@ -1,6 +1,7 @@
 // {"wale_chart": 1, "name": "...", "yarns": {"a": "#rrggbb", "b": null}, "rows": [row, ...]}, the last row knitted
 // first. A row is a text as in the text language, a list of its words, or {"stitches": text or list, "yarns": text or
-// list of letters}.
+// list of letters}. Messages name row and column as those of texts do: "row 2:5" is the second row and its fifth
+// character, or the fifth word where it is a list.
 #include "geom/chart/chart_row.h"
 #include "geom/error.h"
 #include "geom/json_value.h"
@@ -34,7 +35,7 @@ ChartRow row_of(const JsonValue& value, const std::string& where, std::vector<Ch
     for (const JsonValue& item : stitches.items()) {
       ++number;
       std::vector<ChartYarn> none{{}};
-      const ChartRow alone = parse_chart_row(item.text(), fmt::format("{}, stitch {}", where, number), 1, none, true);
+      const ChartRow alone = parse_chart_row(item.text(), fmt::format("{}:{}", where, number), 1, none, true);
       word_of.insert(word_of.end(), alone.cells.size(), number);
     }
     text = words_of(stitches, where, "word of stitches");
@@ -78,7 +79,7 @@ StitchChart parse_chart_json(std::string_view text, const std::filesystem::path&
   if (rows.size() > size_t(kMostStitches)) root["rows"].complain(fmt::format("more than {} rows", kMostStitches));
   size_t stitches = 0;
   for (size_t r = rows.size(); r-- > 0;) {
-    chart.rows.push_back(row_of(rows[r], fmt::format("{}: rows[{}]", file, r), chart.yarns, closed));
+    chart.rows.push_back(row_of(rows[r], fmt::format("{}: row {}", file, r + 1), chart.yarns, closed));
     stitches += size_t(chart.rows.back().makes());
     if (stitches > size_t(kMostStitches))
       rows[r].complain(fmt::format("a tile has at most {} stitches", kMostStitches));

@@ -115,10 +115,8 @@ class Reader {
   }
 
   void word(std::string_view text, int column) {
-    if (text == "k2tog" || text == "ssk" || text == "yo") {
-      add({text == "k2tog" ? Stitch::k2tog : text == "ssk" ? Stitch::ssk : Stitch::yarn_over}, column);
-      return;
-    }
+    for (const StitchWord& known : stitch_words())
+      if (text == known.word) return add({known.stitch}, column);
     if (const auto found = cable(text)) {
       add(*found, column);
       return;
@@ -126,12 +124,18 @@ class Reader {
     for (size_t i = 0; i < text.size();) {
       const auto stitch = symbol(text[i]);
       if (!stitch)
-        user_error("{}:{}: \"{}\" is no stitch; valid: k p s S t T o / \\, k2tog, ssk, yo, cables such as c4f or c2/1b",
-                   where_, column + int(i), one_line(std::string(text.substr(i))));
+        user_error("{}:{}: \"{}\" is no stitch; valid: k p s S t T o / \\, {}, cables such as c4f or c2/1b", where_,
+                   column + int(i), one_line(std::string(text.substr(i))), words());
       const int there = column + int(i);
       ++i;
       for (int k = count(text, i, column); k > 0; --k) add({*stitch}, there);
     }
+  }
+
+  static std::string words() {
+    std::string out;
+    for (const StitchWord& known : stitch_words()) out.append(out.empty() ? "" : ", ").append(known.word);
+    return out;
   }
 
   int yarn(char letter, int column) {

@@ -9,6 +9,7 @@
 #include "geom/error.h"
 #include "geom/pattern_readers.h"
 #include "geom/relax/relax_strains.h"
+#include "geom/relax/resolution.h"
 #include "geom/relax/starts.h"
 
 namespace wale {
@@ -17,6 +18,9 @@ namespace {
 // Loop lengths, in yarn diameters: shorter ones jam, longer ones are no cloth.
 constexpr double kShortest = 6, kLongest = 100;
 constexpr double kNanometres = 1e9;  // per metre
+// A yarn that has to stretch by more, beside what is pulled at it, is jammed into a shape that is not that of its loop
+// length.
+constexpr double kJammed = 0.03;
 // Of yarns that the chart gives no colour.
 constexpr std::array<std::array<uint8_t, 3>, 4> kColors = {
     {{29, 63, 114}, {239, 227, 200}, {140, 47, 38}, {74, 107, 66}}};
@@ -118,30 +122,63 @@ void add_strains(KnittedTile& tile, const KnitSettings& settings, std::chrono::s
   tile.pattern.strains = std::move(found.table);
 }
 
+// A row's yarn crosses the tile, and a loop goes up and comes down again.
+void refuse_beyond_yarn(const PeriodicYarns& yarns, const dvec2& period) {
+  double shortest = INFINITY, all = 0;
+  for (const PeriodicYarn& yarn : yarns.yarns) shortest = std::min(shortest, yarn.length), all += yarn.length;
+  const dvec2 most(shortest, 0.5 * all);
+  if (period.x > most.x || period.y > most.y)
+    user_error("a period of {:g} x {:g} mm: the yarn of this loop length does not reach; valid: up to {:g} x {:g} mm",
+               1e3 * period.x, 1e3 * period.y, 1e3 * most.x, 1e3 * most.y);
+}
+
+// The curves through the points are what is drawn, and where they bend they run outside of the polyline that was
+// relaxed: by 7 % of the yarn's diameter at its tightest bends and 0.6 D a segment. With segments half as long it is a
+// quarter of that, and the yarns that are seen keep their distance too.
+Relaxed relax_finer(PeriodicYarns& yarns, RelaxSettings settings, const std::function<bool(double, double)>& progress) {
+  settings.coarse_first = false;
+  settings.contact_samples /= 2;  // as many along the yarn
+  yarns = refined(yarns);
+  return relax(yarns, settings, progress);
+}
+
 KnittedTile knit_once(const StitchChart& chart, const Knit& knit, const KnitSettings& settings, double diameters,
                       const std::function<bool(double)>& progress) {
+  constexpr double kFirstShare = 0.8;  // of the work; then comes the finer pass
   KnittedTile out;
   PeriodicYarns yarns = loop_curves(knit, {0.5 * settings.yarn_thickness, diameters, settings.step});
   RelaxSettings relaxing;
   relaxing.tension = settings.tension + settings.blocking * dvec2(knit.rows, knit.wales);
   relaxing.max_steps = settings.max_steps;
   relaxing.max_seconds = settings.max_seconds;
+  relaxing.until = end_of(relaxing);
   if (settings.period) {
+    refuse_beyond_yarn(yarns, *settings.period);
     const dvec2 stretch = *settings.period / yarns.period;
     for (dvec3& p : yarns.points) p *= dvec3(stretch, 1);
     yarns.period = *settings.period;
     relaxing.free_period_x = relaxing.free_period_y = false;
+  } else {
+    relaxing.most_strain = kJammed + std::max(relaxing.tension.x, relaxing.tension.y) / relaxing.stretch_stiffness;
   }
   std::vector<Share> shares(size_t(settings.starts), Share(relaxing.force_tolerance));
   std::vector<double> done(shares.size(), 0);
+  const auto go_on = [&](double share) {
+    out.stopped = out.stopped || (progress && !progress(share));
+    return !out.stopped;
+  };
   out.relaxed = relax_from_starts(yarns, relaxing, settings.starts, threads_of(settings),
                                   [&](int start, double thickness, double f) {
                                     done[size_t(start)] = shares[size_t(start)](thickness, f);
                                     double sum = 0;
                                     for (const double d : done) sum += d;
-                                    out.stopped = out.stopped || (progress && !progress(sum / double(done.size())));
-                                    return !out.stopped;
+                                    return go_on(kFirstShare * sum / double(done.size()));
                                   });
+  if (out.relaxed.converged) {
+    const int steps = out.relaxed.steps;
+    out.relaxed = relax_finer(yarns, relaxing, [&](double, double) { return go_on(1); });
+    out.relaxed.steps += steps;
+  }
   if (out.stopped) out.relaxed.converged = false;
   out.loop_length = diameters * settings.yarn_thickness;
   out.force_wanted = relaxing.force_tolerance;
@@ -175,18 +212,15 @@ double next_length(std::vector<dvec2> tried, double wanted) {  // (loop length, 
   return std::exp(near.x - std::clamp(near.y / std::clamp(slope, kSteepest, kFlattest), -kFarthest, kFarthest));
 }
 
-// Where a loop jams it was too short. That is found out in about as many steps as a sound tile takes, and not in all
-// that are allowed; from one start, as the search is for the loop's length.
+// Where a loop jams it was too short. From one start, as the search is for the loop's length.
 KnittedTile knit_to_gauge(const StitchChart& chart, const Knit& knit, const KnitSettings& settings,
                           const std::function<bool(double)>& progress) {
   constexpr int kTries = 10;
-  // Yarn that is stretched by more has been jammed into a shape that is not that of its loop length.
-  constexpr double kJammed = 0.03, kBracket = 1.02;
+  constexpr double kBracket = 1.02;
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(settings.max_seconds);
   const int axis = settings.wales ? 0 : 1;
   const double wanted = settings.wales ? *settings.wales : *settings.courses;
-  const auto sound = [](const KnittedTile& t) { return t.relaxed.converged && t.relaxed.strain <= kJammed; };
   const auto miss = [&](const KnittedTile& tile) { return std::abs(tile.gauge[axis] / wanted - 1); };
   double length = kPlainLoop, jams = 0;
   std::vector<dvec2> tried;
@@ -205,24 +239,26 @@ KnittedTile knit_to_gauge(const StitchChart& chart, const Knit& knit, const Knit
       return tile;
     }
     double next = 1.3 * length;
-    if (!sound(tile)) {
+    if (!tile.relaxed.converged) {
       jams = std::max(jams, length);
       if (!tried.empty()) next = 0.5 * (length + best->loop_length / settings.yarn_thickness);
       if (!best) best = std::move(tile);
     } else {
-      rest.max_steps = std::min(settings.max_steps, 2 * tile.relaxed.steps + 100);
       tried.emplace_back(length, tile.gauge[axis]);
       if (tried.size() == 1 || miss(tile) < miss(*best)) best = std::move(tile);
       if (miss(*best) <= kGaugeTolerance) break;
       next = next_length(tried, wanted);
     }
     next = std::clamp(next, std::max(kShortest, jams), kLongest);
-    // Between a loop that jams and one that is nearly as short there is nothing left to find.
+    // Where the loop would be one that jams, the shortest that does not is looked for, until the two are near.
+    double shortest = kLongest;
+    for (const dvec2& t : tried) shortest = std::min(shortest, t.x);
+    if (next < kBracket * jams && !tried.empty()) next = std::sqrt(jams * shortest);
     if (std::abs(next / length - 1) < 1e-4 || (!tried.empty() && next < kBracket * jams)) break;
     length = next;
   }
   best->tries = tries;
-  best->gauge_reached = sound(*best) && miss(*best) <= kGaugeTolerance;
+  best->gauge_reached = best->relaxed.converged && miss(*best) <= kGaugeTolerance;
   return std::move(*best);
 }
 

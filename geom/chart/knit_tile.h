@@ -16,9 +16,9 @@ constexpr double kStrains[] = {-0.2, 0, 0.25, 0.5, 1};
 
 /// How a chart is knitted. Lengths in metres.
 struct KnitSettings {
-  double yarn_thickness = 1e-3;                      ///< diameter
-  double loop_length = 0;                            ///< yarn in one stitch; 0: kPlainLoop yarn diameters
-  double step = 0.6;                                 ///< length of a segment, in yarn diameters
+  double yarn_thickness = 1e-3;  ///< diameter
+  double loop_length = 0;        ///< yarn in one stitch; 0: kPlainLoop yarn diameters
+  double step = 0.6;  ///< length of a segment, in yarn diameters; half of it in the last pass, and in the tile
   int max_steps = RelaxSettings().max_steps;         ///< of the relaxation
   double max_seconds = RelaxSettings().max_seconds;  ///< of all relaxations together
   int starts = kStarts;                              ///< places to relax from: the state of least energy is kept

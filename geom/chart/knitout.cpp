@@ -1,12 +1,13 @@
 // Knitout (McCann et al., textiles-lab.github.io/knitout/knitout.html): what the needles of a V-bed machine do. Each
 // pass of a carrier becomes a row: knit on the front bed k, on the back bed p, tuck t or T, loops that it leaves alone
-// s or S, with the yarn between the beds; a stitch on an empty needle is a yarn over. Transfers move loops: two on one
-// needle are a decrease, the one that came in front; blocks that changed places are a cable, the one that came back
-// first in front. The chart is the unit that repeats in the middle.
+// s or S, with the yarn between the beds; a stitch on an empty needle is a yarn over. Transfers move loops: two or
+// three on one needle are a decrease, the last that came uppermost; blocks that changed places are a cable, the one
+// that came back first in front. The chart is the unit that repeats in the middle.
 #include <algorithm>
 #include <map>
 #include <optional>
 
+#include "geom/chart/knitout_needle.h"
 #include "geom/chart/repeat_unit.h"
 #include "geom/chart/stitch_chart.h"
 #include "geom/error.h"
@@ -16,26 +17,8 @@ namespace wale {
 namespace {
 
 constexpr size_t kMostCells = 1'000'000;
-constexpr int kMostNeedles = 10000;
-
-// Order along the beds: number, front before back.
-struct Needle {
-  int number = 0;
-  bool back = false;
-  auto operator<=>(const Needle&) const = default;
-};
-
-std::optional<Needle> needle_of(std::string_view word) {
-  if (word.size() < 2 || (word[0] != 'f' && word[0] != 'b')) return std::nullopt;
-  const bool negative = word[1] == '-';
-  int value = 0;
-  for (const char c : word.substr(negative ? 2 : 1)) {
-    if (c < '0' || c > '9' || value > kMostNeedles) return std::nullopt;
-    value = 10 * value + (c - '0');
-  }
-  if (word.size() == 2 && negative) return std::nullopt;
-  return Needle{negative ? -value : value, word[0] == 'b'};
-}
+constexpr size_t kMostCarriers = 26;  // yarns of a chart are letters
+constexpr size_t kMostLoops = 3;      // on a needle: no decrease of a chart takes more
 
 struct Held {
   int wale = 0;     // of the row below
@@ -101,7 +84,6 @@ class Machine {
       for (int& yarn : row.yarn) {
         const auto [at, is_new] = letters.try_emplace(yarn, int(letters.size()));
         if (is_new) {
-          if (letters.size() > 26) user_error("{}: more than 26 carriers", row.where);
           out.yarns.push_back({char('a' + at->second), {}});
         }
         yarn = at->second;
@@ -137,7 +119,7 @@ class Machine {
                          !pass_->ops.contains(needle);
     if (!goes_on) {
       end_pass();
-      pass_ = Pass{right, carrier, needle.number, line_, {}};
+      pass_ = Pass{right, carrier, needle.number, line_, rack_, {}};
     }
     pass_->at = needle.number;
     if (op != "miss") pass_->ops[needle] = op == "knit" ? Op::knit : Op::tuck;
@@ -146,6 +128,9 @@ class Machine {
   void transfer(Needle from, Needle to) {
     if (from.back == to.back) fail("xfer goes from one bed to the other");
     const int offset = int(rack_);  // back needle b lies at b + rack
+    if (offset != rack_)
+      fail(fmt::format("at rack {} no needles face each other, and nothing is transferred; valid: a whole number",
+                       rack_));
     if ((to.back ? from.number - to.number : to.number - from.number) != offset)
       fail(fmt::format("at rack {} these needles do not face each other", rack_));
     const auto at = held_.find(from);
@@ -156,6 +141,9 @@ class Machine {
     for (Held& loop : loops) loop.arrival = transfers_, loop.moved += to.number - from.number;
     // The last to come lies in front.
     std::vector<Held>& there = held_[to];
+    if (there.size() + loops.size() > kMostLoops)
+      fail(fmt::format("{} loops on needle {}; a chart takes up to {} as one", there.size() + loops.size(),
+                       needle_text(to), kMostLoops));
     there.insert(there.begin(), loops.begin(), loops.end());
   }
 
@@ -172,7 +160,17 @@ class Machine {
     for (const auto& [needle, op] : pass.ops)
       if (!held_.contains(needle)) needles.push_back(needle);
     std::sort(needles.begin(), needles.end());
+    // At rack r back needle b lies at b + r. From 0 on and below 1 that is between front needles b and b + 1; beyond,
+    // loops of the beds pass each other, which no chart says.
+    const bool beds = std::any_of(needles.begin(), needles.end(), [](Needle n) { return n.back; }) &&
+                      std::any_of(needles.begin(), needles.end(), [](Needle n) { return !n.back; });
+    if (beds && !(pass.rack >= 0 && pass.rack < 1))
+      user_error("{}:{}: a pass at rack {} with loops on both beds; valid: racks from 0 on and below 1", file_,
+                 pass.line, pass.rack);
     const int yarn = carriers_.try_emplace(pass.carrier, int(carriers_.size())).first->second;
+    if (carriers_.size() > kMostCarriers)
+      user_error("{}:{}: more than {} yarns: carriers, and sets of them that knit as one", file_, pass.line,
+                 kMostCarriers);
     Reach reach{-1, -1};
     for (size_t i = 0; i < needles.size(); ++i)
       if (pass.ops.contains(needles[i])) {
@@ -201,10 +199,9 @@ class Machine {
     bool right = true;
     std::string carrier;
     int at = 0, line = 0;
+    double rack = 0;
     std::map<Needle, Op> ops;
   };
-
-  static std::string needle_text(Needle n) { return fmt::format("{}{}", n.back ? 'b' : 'f', n.number); }
 
   ChartCell cell(Needle needle, const std::vector<Held>& loops, int& taken, const Pass& pass) const {
     const auto op = pass.ops.find(needle);
@@ -213,19 +210,25 @@ class Machine {
     for (size_t k = 0; k < loops.size(); ++k)
       if (std::none_of(loops.begin(), loops.end(), [&](const Held& h) { return h.wale == taken + int(k); }))
         crossed(needle, pass);
+    const int before = taken;
     taken += int(loops.size());
     if (loops.size() == 1) {
       if (!worked) return {needle.back ? Stitch::slip_front : Stitch::slip};
       if (tucks) return {needle.back ? Stitch::tuck_front : Stitch::tuck};
       return {needle.back ? Stitch::purl : Stitch::knit};
     }
-    if (loops.size() > 2 || needle.back || !worked || tucks)
-      user_error("{}:{}: {} loops on needle {} are {}; two that are knitted on the front bed can be read", file_,
-                 pass.line, loops.size(), needle_text(needle),
-                 !worked ? "left alone"
-                 : tucks ? "tucked"
-                         : "taken together");
-    return {loops[0].wale < loops[1].wale ? Stitch::k2tog : Stitch::ssk};
+    if (worked && !tucks)
+      for (const StitchWord& known : stitch_words())
+        if (is_decrease(known.stitch) && pulls_to_front(known.stitch) != needle.back &&
+            std::ranges::equal(loops, taken_order(known.stitch), {}, [&](const Held& h) { return h.wale - before; }))
+          return {known.stitch};
+    user_error(
+        "{}:{}: {} loops on needle {} are {}; what can be read is k2tog, ssk, k3tog, k3togtbl and cdd on the front "
+        "bed, p2tog and ssp on the back bed",
+        file_, pass.line, loops.size(), needle_text(needle),
+        !worked ? "left alone"
+        : tucks ? "tucked"
+                : "taken together in another order");
   }
 
   [[noreturn]] void crossed(Needle needle, const Pass& pass) const {

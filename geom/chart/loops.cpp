@@ -32,15 +32,18 @@ class Knitter {
       switch (cell.stitch) {
         case Stitch::knit:
         case Stitch::purl:
-          after.push_back(pull(*first, number, wale, cell.stitch == Stitch::knit));
+          after.push_back(pull(*first, number, wale, pulls_to_front(cell.stitch)));
           break;
         case Stitch::k2tog:
-        case Stitch::ssk: {
-          const Needle &front = cell.stitch == Stitch::k2tog ? first[0] : first[1],
-                       &behind = cell.stitch == Stitch::k2tog ? first[1] : first[0];
-          Needle both = front;
-          both.insert(both.end(), behind.begin(), behind.end());
-          after.push_back(pull(both, number, wale, true));
+        case Stitch::ssk:
+        case Stitch::p2tog:
+        case Stitch::ssp:
+        case Stitch::k3tog:
+        case Stitch::k3togtbl:
+        case Stitch::cdd: {
+          Needle all;
+          for (const int from : taken_order(cell.stitch)) all.insert(all.end(), first[from].begin(), first[from].end());
+          after.push_back(pull(all, number, wale, pulls_to_front(cell.stitch)));
           break;
         }
         case Stitch::slip:

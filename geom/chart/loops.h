@@ -12,7 +12,7 @@ struct Loop {
   bool knit = true;                                                 ///< pulled to the front; false: to the back
   int top_row = 0, top_wale = 0;                                    ///< where the next loop is pulled through it
   bool top_knit = true;
-  int place = 0, beside = 1;  ///< of `beside` loops taken together the place-th, 0 = in front
+  int place = 0, beside = 1;  ///< of `beside` loops taken together the place-th, 0 = uppermost where they are pulled to
   int crossing = 0;           ///< cable: on its way up it passes in front (1) or behind (-1) of others
 };
 

@@ -1,13 +1,14 @@
 #include "geom/chart/repeat_unit.h"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace wale {
 namespace {
 
 // A row by wales: what is made there, and how many loops the row has taken before it.
 struct Line {
-  std::vector<int> token;  // -1: within a cable
+  std::vector<int64_t> token;  // -1: within a cable
   std::vector<int> taken;
   std::vector<size_t> cell;
 };
@@ -22,7 +23,7 @@ Line line_of(const ChartRow& row) {
       const int kind = cell.stitch == Stitch::cable
                            ? 16 + 2 * (cell.left * 1024 + cell.right) + (cell.left_in_front ? 1 : 0)
                            : int(cell.stitch);
-      line.token.push_back(k ? -1 : kind * 32 + yarn % 32);
+      line.token.push_back(k ? -1 : int64_t(kind) << 32 | yarn);
       line.taken.push_back(taken);
       line.cell.push_back(c);
     }
@@ -81,12 +82,12 @@ class Search {
   }
 
   RepeatUnit cut(size_t up, int across) const {
-    std::vector<int> best;
+    std::vector<int64_t> best;
     RepeatUnit unit;
     for (int wale = left_; wale < left_ + across; ++wale) {
       if (!begins(up, wale) || !begins(up, wale + across)) continue;
       for (size_t row = low_; row < low_ + up; ++row) {
-        std::vector<int> text;
+        std::vector<int64_t> text;
         for (size_t r = row; r < row + up; ++r)
           text.insert(text.end(), lines_[r].token.begin() + wale, lines_[r].token.begin() + wale + across);
         if (!best.empty() && best <= text) continue;

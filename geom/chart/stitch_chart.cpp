@@ -42,7 +42,7 @@ ChartYarn yarn_line(std::string_view text, const std::string& where, const std::
 }
 
 const char* name_of(const ChartCell& cell) {
-  return cell.stitch == Stitch::cable ? "this cable" : cell.takes() == 2 ? "this decrease" : "this stitch";
+  return cell.stitch == Stitch::cable ? "this cable" : is_decrease(cell.stitch) ? "this decrease" : "this stitch";
 }
 
 std::string cell_text(const ChartCell& cell) {
@@ -65,6 +65,14 @@ std::string cell_text(const ChartCell& cell) {
       return "/";
     case Stitch::ssk:
       return "\\";
+    case Stitch::p2tog:
+    case Stitch::ssp:
+    case Stitch::k3tog:
+    case Stitch::k3togtbl:
+    case Stitch::cdd:
+      for (const StitchWord& known : stitch_words())
+        if (known.stitch == cell.stitch) return fmt::format(" {} ", known.word);
+      break;
     case Stitch::cable:
       break;
   }
@@ -73,6 +81,34 @@ std::string cell_text(const ChartCell& cell) {
 }
 
 }  // namespace
+
+std::span<const int> taken_order(Stitch stitch) {
+  static constexpr int kTwo[] = {0, 1}, kTwoTurned[] = {1, 0}, kThree[] = {0, 1, 2}, kThreeTurned[] = {2, 1, 0},
+                       kMiddle[] = {1, 2, 0};
+  switch (stitch) {
+    case Stitch::k2tog:
+    case Stitch::ssp:  // uppermost behind, and so not in front
+      return kTwo;
+    case Stitch::ssk:
+    case Stitch::p2tog:
+      return kTwoTurned;
+    case Stitch::k3tog:
+      return kThree;
+    case Stitch::k3togtbl:
+      return kThreeTurned;
+    case Stitch::cdd:
+      return kMiddle;
+    default:
+      return {};
+  }
+}
+
+std::span<const StitchWord> stitch_words() {
+  static constexpr StitchWord kWords[] = {
+      {"k2tog", Stitch::k2tog}, {"ssk", Stitch::ssk},           {"p2tog", Stitch::p2tog}, {"ssp", Stitch::ssp},
+      {"k3tog", Stitch::k3tog}, {"k3togtbl", Stitch::k3togtbl}, {"cdd", Stitch::cdd},     {"yo", Stitch::yarn_over}};
+  return kWords;
+}
 
 int ChartRow::takes() const { return sum(cells, &ChartCell::takes); }
 int ChartRow::makes() const { return sum(cells, &ChartCell::makes); }

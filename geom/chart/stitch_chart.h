@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,8 +21,29 @@ enum class Stitch {
   yarn_over,   ///< a loop through nothing: one stitch more
   k2tog,       ///< two loops as one, the left one in front, leaning right: one stitch fewer
   ssk,         ///< ... the right one in front, leaning left
+  p2tog,       ///< two purled as one, the left one in front, leaning right; from behind it is a k2tog
+  ssp,         ///< ... the right one in front, leaning left; from behind it is an ssk
+  k3tog,       ///< three as one, from left to right behind each other, leaning right
+  k3togtbl,    ///< ... from right to left, leaning left (sssk)
+  cdd,         ///< ... the middle one in front, then the right one, upright (s2kp)
   cable,       ///< knit loops that have changed places
 };
+
+/// Of the loops that a decrease takes as one, counted from the left: which lies uppermost on the side that they are
+/// pulled to, which beneath it, and so on. Empty for what is no decrease.
+std::span<const int> taken_order(Stitch stitch);
+inline bool is_decrease(Stitch stitch) { return !taken_order(stitch).empty(); }
+/// Whether a stitch pulls its loop to the front.
+inline bool pulls_to_front(Stitch stitch) {
+  return stitch != Stitch::purl && stitch != Stitch::p2tog && stitch != Stitch::ssp;
+}
+
+/// A word of the text language that is no single symbol.
+struct StitchWord {
+  std::string_view word;
+  Stitch stitch;
+};
+std::span<const StitchWord> stitch_words();
 
 /// One symbol of a chart.
 struct ChartCell {
@@ -30,10 +52,10 @@ struct ChartCell {
   bool left_in_front = true;  ///< cable: the left ones go in front (to the right)
   int column = 0;             ///< where it stands in the file's row, from 1, for messages
   int takes() const {
-    return stitch == Stitch::yarn_over                        ? 0
-           : stitch == Stitch::cable                          ? left + right
-           : stitch == Stitch::k2tog || stitch == Stitch::ssk ? 2
-                                                              : 1;
+    return stitch == Stitch::yarn_over ? 0
+           : stitch == Stitch::cable   ? left + right
+           : is_decrease(stitch)       ? int(taken_order(stitch).size())
+                                       : 1;
   }
   int makes() const { return stitch == Stitch::cable ? left + right : 1; }
   bool slips() const { return stitch == Stitch::slip || stitch == Stitch::slip_front; }

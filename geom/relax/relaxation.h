@@ -1,5 +1,6 @@
 #pragma once
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <string>
 
@@ -18,19 +19,33 @@ struct RelaxSettings {
   dvec2 tension{0, 0};              ///< force on the whole sides of the tile, along x and along y, B / D^2
   bool free_period_x = true, free_period_y = true;
   double force_tolerance = 2e-3;  ///< largest force on a point and on the period's sides, B / D^2
+  double most_strain = INFINITY;  ///< of the yarn: one that had to stretch by more is jammed
   bool coarse_first = true;       ///< with every second point first, where that is safe
   int max_steps = 3000;
   double max_seconds = 600;
   std::chrono::steady_clock::time_point until = std::chrono::steady_clock::time_point::max();  ///< ends it too
+  /// Sees every state on the way, in yarn diameters: points go straight from one to the next. Where their number
+  /// doubles or halves, points came or went in the middles of segments.
+  std::function<void(const PeriodicYarns&)> watch;
 };
 
 /// When a relaxation that begins now ends.
 std::chrono::steady_clock::time_point end_of(const RelaxSettings& settings);
 
+/// Why a relaxation ended.
+enum class RelaxEnd {
+  at_rest,  ///< forces, contact and strain are as asked for
+  time,     ///< max_seconds or `until`
+  steps,    ///< max_steps
+  jammed,   ///< the yarn did not come to its diameter, or only stretched
+  stuck,    ///< no step led further down
+  stopped,  ///< `progress` said so
+};
+
 /// What was reached.
 struct Relaxed {
-  bool converged = false;
-  bool out_of_time = false;  ///< max_seconds or `until` ended it
+  bool converged = false;  ///< end is at_rest
+  RelaxEnd end = RelaxEnd::stuck;
   int steps = 0;
   double force = 0;            ///< largest left on a point, B / D^2
   double period_force = 0;     ///< and on the period

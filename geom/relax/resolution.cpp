@@ -18,7 +18,8 @@ PeriodicYarns refined(const PeriodicYarns& yarns) {
   return out;
 }
 
-std::optional<PeriodicYarns> coarsened(const PeriodicYarns& yarns, double neighbours) {
+std::optional<PeriodicYarns> coarsened(const PeriodicYarns& yarns, double neighbours,
+                                       const std::function<bool(const PeriodicYarns&)>& over) {
   constexpr int kSteps = 40;
   constexpr double kReach = 1.0, kKept = 0.5;
   for (const PeriodicYarn& yarn : yarns.yarns)
@@ -34,12 +35,13 @@ std::optional<PeriodicYarns> coarsened(const PeriodicYarns& yarns, double neighb
   const std::vector<YarnSegment> segments = segments_of(yarns);
   TileStep step;
   step.points.assign(yarns.points.size(), dvec3(0.0));
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < kSteps && !(over && over(work)); ++i) {
     for (size_t k = 1; k < segments.size(); k += 2)
       step.points[segments[k].a] = 0.5 * (edge_of(work, segments[k]) - edge_of(work, segments[k - 1]));
     const double share = safe_share(work, segments, near_pairs(work, segments, kReach, neighbours), kReach, 0, step);
     work = moved(work, step, share);
     if (share < 1) continue;
+    if (over && over(work)) break;
     PeriodicYarns out = work;
     out.points.clear();
     for (size_t k = 0; k < work.points.size(); k += 2) out.points.push_back(work.points[k]);

@@ -66,6 +66,10 @@ Relaxed relax_from_starts(PeriodicYarns& yarns, const RelaxSettings& settings, i
   std::mutex telling;
   bool go_on = true;
   run_tasks(threads, open, [&](size_t i, const auto&) {
+    if (i > 0 && std::chrono::steady_clock::now() > timed.until) {
+      tries[i].reached.end = RelaxEnd::time;
+      return;
+    }
     if (i > 0) shake(tries[i].yarns, kShaken, settings.neighbours, i);
     tries[i].reached = relax(tries[i].yarns, timed, [&](double share, double force) {
       const std::lock_guard lock(telling);
@@ -73,13 +77,14 @@ Relaxed relax_from_starts(PeriodicYarns& yarns, const RelaxSettings& settings, i
     });
   });
   const auto better = [](const Try& a, const Try& b) {
-    return a.reached.converged != b.reached.converged ? a.reached.converged : a.reached.energy < b.reached.energy;
+    if (a.reached.converged != b.reached.converged) return a.reached.converged;
+    if ((a.reached.steps > 0) != (b.reached.steps > 0)) return a.reached.steps > 0;  // the others had no time to begin
+    return a.reached.energy < b.reached.energy;
   };
   Try& best = *std::min_element(tries.begin(), tries.end(), better);
   // Which starts came to their end in time hangs on the machine, and so would the lowest of them.
   for (const Try& one : tries)
-    if (one.reached.out_of_time && !one.reached.converged)
-      best.reached.converged = false, best.reached.out_of_time = true;
+    if (one.reached.end == RelaxEnd::time) best.reached.converged = false, best.reached.end = RelaxEnd::time;
   yarns = std::move(best.yarns);
   return best.reached;
 }

@@ -14,8 +14,8 @@ mkdir -p "$reports"
 # buckle; and how many starts, where 4 would take long or more find a lower state.
 declare -A options=(
   [basketweave]="--loop-diameters 14 --blocking 1 --starts 2"
-  [cable_4]="--starts 2"
-  [cable_6]="--starts 1"
+  [cable_4]="--blocking 1 --starts 2"
+  [cable_6]="--blocking 1 --starts 1"
   [eyelet]="--loop-diameters 15 --blocking 0.4 --starts 2"
   [honeycomb]="--loop-diameters 15 --course-tension 1.6 --wale-tension 6 --starts 2"
   [mosaic]="--loop-diameters 15 --blocking 1 --starts 8"
@@ -23,7 +23,7 @@ declare -A options=(
   [seed]="--loop-diameters 15 --blocking 0.5 --starts 16"
   [stranded]="--loop-diameters 15 --blocking 1 --starts 2"
   [stockinette_relaxed]="--strains"
-  [waffle]="--loop-diameters 14 --blocking 0.5 --starts 8"
+  [waffle]="--blocking 0.2"
 )
 failed=0
 for name in "${names[@]}"; do

@@ -98,6 +98,81 @@ TEST(Knitout, Cable) {
   EXPECT_EQ(cables, 1u);
 }
 
+// Neighbours on both sides move onto one needle.
+TEST(Knitout, DoubleDecreases) {
+  const auto lace = [](bool right_first, bool middle_last) {
+    return swatch(24, knit, [=](int row) {
+      std::string out;
+      if (row % 4 != 0) return out;
+      for (int i = 2; i + 1 <= kNeedles; i += 4) {
+        const auto move = [&](int from) {
+          out += fmt::format("xfer f{} b{}\nrack {}\nxfer b{} f{}\nrack 0\n", from, from, i - from, from, i);
+        };
+        if (middle_last) out += fmt::format("xfer f{} b{}\n", i, i);
+        move(right_first ? i + 1 : i - 1);
+        move(right_first ? i - 1 : i + 1);
+        if (middle_last) out += fmt::format("xfer b{} f{}\n", i, i);
+      }
+      return out;
+    });
+  };
+  EXPECT_EQ(chart_lines(read(lace(false, true))), (Lines{"ko cdd o", "kkkk", "kkkk", "kkkk"}));
+  expect_user_error(
+      [&] { read(lace(true, true)); },
+      {"s.knitout:", "3 loops on needle f2 are taken together in another order", "k3tog, k3togtbl and cdd"});
+}
+
+TEST(Knitout, PurledDecreases) {
+  const auto lace = [](int to) {
+    std::string text = ";!knitout-2\n";
+    for (int row = -2; row < 24; ++row) {
+      if (row >= 0 && row % 4 == 0)
+        for (int i = 3; i < kNeedles; i += 4)
+          text += fmt::format("xfer b{} f{}\nrack {}\nxfer f{} b{}\nrack 0\n", i, i, -to, i, i + to);
+      for (int i = 1; i <= kNeedles; ++i)
+        text += row % 2 == 0 ? fmt::format("knit + b{} 1\n", i) : fmt::format("knit - b{} 1\n", kNeedles + 1 - i);
+    }
+    return text;
+  };
+  EXPECT_EQ(chart_lines(read(lace(1))), (Lines{"ppo ssp", "pppp", "pppp", "pppp"}));
+  EXPECT_EQ(chart_lines(read(lace(-1))), (Lines{"pp p2tog o", "pppp", "pppp", "pppp"}));
+}
+
+// Half a needle: both beds knit, back needles between the front ones, but none face each other.
+TEST(Knitout, RacksBetweenNeedles) {
+  const auto rib = [](const std::string& rack) {
+    std::string text = ";!knitout-2\nrack " + rack + "\n";
+    for (int row = 0; row < 20; ++row)
+      for (int k = 1; k <= kNeedles; ++k) {
+        const int i = row % 2 ? kNeedles + 1 - k : k;
+        text += row % 2 ? fmt::format("knit - b{} 1\nknit - f{} 1\n", i, i)
+                        : fmt::format("knit + f{} 1\nknit + b{} 1\n", i, i);
+      }
+    return text;
+  };
+  EXPECT_EQ(chart_lines(read(rib("0.5"))), (Lines{"kp"}));
+  refused(rib("1"), {"s.knitout:", "a pass at rack 1 with loops on both beds; valid: racks from 0 on and below 1"});
+  refused(rib("-0.5"), {"a pass at rack -0.5"});
+  refused(";!knitout-2\nknit + f1 1\nrack 0.5\nxfer f1 b1\n", {"s.knitout:4: at rack 0.5 no needles face each other"});
+}
+
+// More yarns than letters were told apart by their number modulo 32: a stripe of 33 carriers was none.
+TEST(Knitout, CarriersAreAtMostLetters) {
+  std::string text = ";!knitout-2\n";
+  for (int row = 0; row < 40; ++row)
+    for (int k = 1; k <= kNeedles; ++k)
+      text += fmt::format("knit {} f{} {}\n", row % 2 ? '-' : '+', row % 2 ? kNeedles + 1 - k : k, row % 33);
+  refused(text, {"s.knitout:626: more than 26 yarns"});
+}
+
+// Loops pile up one by one; nothing takes so many, and they are refused before there are thousands.
+TEST(Knitout, PiledLoops) {
+  std::string text = ";!knitout-2\n";
+  for (int i = 1; i <= kNeedles; ++i) text += fmt::format("knit + f{} 1\n", i);
+  for (int i = 2; i <= kNeedles; ++i) text += fmt::format("rack {}\nxfer f{} b1\n", i - 1, i);
+  refused(text, {"s.knitout:33: 4 loops on needle b1; a chart takes up to 3 as one"});
+}
+
 TEST(Knitout, WhatCannotBeRead) {
   refused("knit + f1 1\n", {"s.knitout:1", ";!knitout-2"});
   refused(";!knitout-2\n", {"no stitches"});

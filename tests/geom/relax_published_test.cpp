@@ -49,16 +49,21 @@ double distance_to(const Centrelines& lines, const dvec3& p) {
   return best;
 }
 
-// Largest distance of a point of `one`, moved by `shift`, from the lines of `other`.
-double farthest(const Centrelines& one, const Centrelines& other, const dvec3& shift) {
+// Largest distance of a point of `one`, moved by `shift`, from the lines of `other`; from `enough` on any such
+// distance.
+double farthest(const Centrelines& one, const Centrelines& other, const dvec3& shift, double enough) {
   double worst = 0;
   for (const auto& [a, b] : one.segments)
-    for (const double t : {0.0, 0.5}) worst = std::max(worst, distance_to(other, glm::mix(a, b, t) + shift));
+    for (const double t : {0.0, 0.5}) {
+      worst = std::max(worst, distance_to(other, glm::mix(a, b, t) + shift));
+      if (worst >= enough) return worst;
+    }
   return worst;
 }
 
-double symmetric(const Centrelines& a, const Centrelines& b, const dvec3& shift) {
-  return std::max(farthest(a, b, shift), farthest(b, a, -shift));
+double symmetric(const Centrelines& a, const Centrelines& b, const dvec3& shift, double enough) {
+  const double there = farthest(a, b, shift, enough);
+  return there >= enough ? there : std::max(there, farthest(b, a, -shift, enough));
 }
 
 // Symmetric Hausdorff distance of one tile each, after the best shift and mirroring.
@@ -74,7 +79,7 @@ double hausdorff(Centrelines a, const Centrelines& b) {
     for (int i = 0; i < kGrid; ++i)
       for (int j = 0; j < kGrid; ++j) {
         const dvec3 shift(dvec2(i, j) / double(kGrid) * b.period, 0);
-        if (const double d = symmetric(m, b, shift); d < here) here = d, at = shift;
+        if (const double d = symmetric(m, b, shift, here); d < here) here = d, at = shift;
       }
     // Compass search: the shift across the cloth is found by it too.
     for (double step = b.period.y / kGrid; step > 1e-4 * b.period.y; step *= 0.5)
@@ -83,7 +88,7 @@ double hausdorff(Centrelines a, const Centrelines& b) {
         for (int k = 0; k < 6; ++k) {
           dvec3 next = at;
           next[k / 2] += k % 2 ? step : -step;
-          if (const double d = symmetric(m, b, next); d < here) here = d, at = next, moved = true;
+          if (const double d = symmetric(m, b, next, here); d < here) here = d, at = next, moved = true;
         }
       }
     best = std::min(best, here);

@@ -37,6 +37,15 @@ TEST(StitchChart, EverySymbol) {
   EXPECT_FALSE(chart.rows[0].cells[7].left_in_front);
 }
 
+TEST(StitchChart, Decreases) {
+  const StitchChart chart = text("o p2tog ssp o  o k3tog o k3togtbl oo  o cdd o\n");
+  EXPECT_EQ(chart.wales(), 13);
+  EXPECT_EQ(chart_lines(chart), (Lines{"o p2tog  ssp oo k3tog o k3togtbl ooo cdd o"}));
+  EXPECT_EQ(chart_lines(text(chart_lines(chart)[0])), chart_lines(chart));
+  refused("k4\nk2 cdd\n", {"c.chart:2:4: this decrease takes 3 loops", "of the 4"});
+  refused("k p3tog\nk2\n", {"c.chart:1:7", "\"g\" is no stitch", "p2tog, ssp, k3tog, k3togtbl, cdd"});
+}
+
 TEST(StitchChart, YarnsOfStitches) {
   const StitchChart chart = text("yarn a: #1d3f72  # navy\nyarn c:\nk4 | a2 c a\nk4 | c\n");
   ASSERT_EQ(chart.yarns.size(), 2u);
@@ -134,13 +143,13 @@ TEST(StitchChart, OddCables) {
 
 TEST(StitchChart, BadJson) {
   json_refused("[]", {"c.json: no row"});
-  json_refused("[\"\"]", {"c.json: rows[0]", "without stitches"});
-  json_refused("[\"kk\", \"k x\"]", {"c.json: rows[1]:3", "\"x\" is no stitch"});
-  json_refused("[[\"k\", \"q\"]]", {"c.json: rows[0], stitch 2", "\"q\" is no stitch"});
-  json_refused("[[\"k k\"]]", {"c.json: rows[0]:1", "not one word"});
-  json_refused("[\"kkk\", [\"k\", \"k\", \"k2tog\"]]", {"rows[1]:3: this decrease takes 2"});
-  json_refused("[{\"stitches\": \"kk\", \"yarns\": \"abc\"}]", {"rows[0]", "more than the 2"});
-  json_refused("[{\"stitches\": \"kkk\", \"yarns\": [\"a\", \"b\"]}]", {"rows[0]", "mid-air"});
+  json_refused("[\"\"]", {"c.json: row 1:1", "without stitches"});
+  json_refused("[\"kk\", \"k x\"]", {"c.json: row 2:3", "\"x\" is no stitch"});
+  json_refused("[[\"k\", \"q\"]]", {"c.json: row 1:2:1", "\"q\" is no stitch"});
+  json_refused("[[\"k k\"]]", {"c.json: row 1:1", "not one word"});
+  json_refused("[\"kkk\", [\"k\", \"k\", \"k2tog\"]]", {"c.json: row 2:3: this decrease takes 2"});
+  json_refused("[{\"stitches\": \"kk\", \"yarns\": \"abc\"}]", {"c.json: row 1:", "more than the 2"});
+  json_refused("[{\"stitches\": \"kkk\", \"yarns\": [\"a\", \"b\"]}]", {"c.json: row 1:", "mid-air"});
   json_refused("[{\"stiches\": \"kk\"}]", {"rows[0]", "unknown key 'stiches'"});
   json_refused("[7]", {"rows[0]", "an object is expected"});
   json_refused("7", {"rows", "a list is expected"});
@@ -166,6 +175,25 @@ TEST(Loops, TheLoopThatLeansLiesInFront) {
   EXPECT_EQ(left.loops[0].place, 1) << "ssk: the right one";
   EXPECT_EQ(left.loops[1].place, 0);
   EXPECT_EQ(left.loops[1].top_wale, 0);
+}
+// From the front: of two purled as one the left one lies in front, which is beneath it where they are pulled to.
+TEST(Loops, PurledDecreasesAreKnittedOnesFromBehind) {
+  const Knit right = knit_chart(text("o p2tog\nkk\n")), left = knit_chart(text("ssp o\nkk\n"));
+  EXPECT_EQ(right.loops[0].place, 1);
+  EXPECT_EQ(right.loops[1].place, 0);
+  EXPECT_FALSE(right.loops[0].top_knit);
+  EXPECT_EQ(left.loops[0].place, 0);
+  EXPECT_EQ(left.loops[1].place, 1);
+}
+TEST(Loops, ThreeAreTakenInTheirOrder) {
+  for (const auto& [word, places] : {std::pair{"k3tog", ivec3(0, 1, 2)}, {"k3togtbl", {2, 1, 0}}, {"cdd", {2, 0, 1}}}) {
+    const Knit knit = knit_chart(text(std::string("o ") + word + " o\nkkk\n"));
+    for (size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(knit.loops[i].place, places[int(i)]) << word << " " << i;
+      EXPECT_EQ(knit.loops[i].beside, 3);
+      EXPECT_EQ(knit.loops[i].top_wale, 1);
+    }
+  }
 }
 TEST(Loops, CablesCross) {
   const Knit knit = knit_chart(text("c2/1f\nk3\n"));

@@ -250,34 +250,6 @@ TEST(Strain, APlyTurnsWithItsYarnAndStaysAtItsDistance) {
   EXPECT_LT(turned / double(count), 0.002);
 }
 
-TEST(Strain, BeyondTheTableItsBorderIsTakenAndCounted) {
-  const BaseMesh far = moved(make_swatch(0.02, 0.012, 6, 4), [](dvec3 p) { return dvec3(1.9 * p.x, p.y, p.z); });
-  const Fabric beyond = knit(far, LoopStrain::relaxed, kReach, 1);
-  EXPECT_GT(beyond.report.strain.samples, 0u);
-  EXPECT_EQ(beyond.report.strain.clamped, beyond.report.strain.samples);
-  EXPECT_NEAR(beyond.report.strain.most.x, 0.9, 1e-6);
-  const BaseMesh border = moved(make_swatch(0.02, 0.012, 6, 4), [](dvec3 p) { return dvec3(1.5 * p.x, p.y, p.z); });
-  const Fabric at_border = knit(border, LoopStrain::relaxed, kReach, 1);
-  EXPECT_EQ(at_border.report.strain.clamped, 0u);
-  expect_same_bits(beyond, at_border);
-}
-
-// The yarn's own scale is the one through the cloth: a tile drawn out by the gauge is strained, one made larger is not.
-TEST(Strain, AGaugeOfAnotherAspectIsAStrain) {
-  const BaseMesh mesh = make_swatch(0.04, 0.024, 6, 4);
-  const Pattern tile = straining_tile(kReach);
-  FabricSpec spec = strained_spec(LoopStrain::relaxed);
-  spec.scale.kind = FabricScale::Kind::gauge;
-  spec.scale.gauge = {1 / (1.5 * tile.period.x), 1 / (1.5 * tile.period.y)};
-  const Fabric larger = knit_fabric(mesh, tile, spec, 1);
-  EXPECT_EQ(larger.report.strain.least, dvec2(0));
-  EXPECT_EQ(larger.report.strain.most, dvec2(0));
-  spec.scale.gauge = {1 / (1.44 * tile.period.x), 1 / (1.0 * tile.period.y)};
-  const Fabric wider = knit_fabric(mesh, tile, spec, 1);
-  EXPECT_NEAR(wider.report.strain.least.x, 0.2, 1e-6);  // sqrt(1.44), and its inverse along wales
-  EXPECT_NEAR(wider.report.strain.most.y, 1 / 1.2 - 1, 1e-6);
-}
-
 TEST(Strain, TheSameOnAnyNumberOfThreads) {
   const BaseMesh mesh = striped(0.03, 10, [](int c) { return 0.04 * c; });
   const Pattern tile = straining_tile(kReach);
@@ -286,15 +258,6 @@ TEST(Strain, TheSameOnAnyNumberOfThreads) {
   expect_same_bits(one, four);
   EXPECT_EQ(one.report.strain.samples, four.report.strain.samples);
   EXPECT_EQ(one.report.strain.most, four.report.strain.most);
-}
-
-TEST(Strain, NeedsATableAndStoredPoints) {
-  const BaseMesh mesh = make_swatch(0.02, 0.012, 6, 4);
-  FabricSpec spec = strained_spec(LoopStrain::relaxed);
-  expect_user_error([&] { knit_fabric(mesh, stockinette_pattern(0.002), spec); },
-                    {"fabric 'cloth'", "no table of strains", "affine"});
-  spec.lattice = 1;
-  expect_user_error([&] { knit_lattice(mesh, straining_tile(kReach), spec); }, {"fabric 'cloth'", "relaxed", "stored"});
 }
 
 }  // namespace
