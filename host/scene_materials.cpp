@@ -5,6 +5,7 @@
 #include "host/material_schema.h"
 #include "host/scattering_keys.h"
 #include "host/scene_nodes.h"
+#include "host/suggest.h"
 
 namespace wale {
 namespace {
@@ -142,6 +143,29 @@ MaterialSpec material_of(const std::string& name, const JsonNode& node) {
     material.surface.ior = number_of(node, "ior");
   }
   return material;
+}
+
+int find_material(Scene& scene, const JsonNode& user, const std::string& path, bool ply) {
+  const JsonNode* name = user.find("material");
+  const std::string wanted = name ? name->text : ply ? "(wool)" : "(grey)";
+  std::vector<std::string> fitting;
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    const MaterialSpec& material = scene.materials[i];
+    if (material.name == wanted && material.ply == ply) return int(i);
+    if (material.name == wanted)
+      fail(*name, path + ".material", "\"{}\" is a {} material; {} is needed here", wanted,
+           material.ply              ? "ply"
+           : material.surface.coated ? "coated"
+                                     : "diffuse",
+           ply ? "one of type \"ply\"" : "one of type \"diffuse\" or \"coated\"");
+    if (material.ply == ply) fitting.push_back(material.name);
+  }
+  if (name) fail(*name, path + ".material", "no material is named \"{}\"; {}", wanted, nearest_choice(wanted, fitting));
+  MaterialSpec made;
+  made.name = wanted;
+  made.ply = ply;
+  scene.materials.push_back(made);
+  return int(scene.materials.size()) - 1;
 }
 
 }  // namespace wale

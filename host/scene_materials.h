@@ -18,4 +18,8 @@ void join_material(const std::string& name, JsonNode& node, JsonNode base);
 /// A checked node of the scene's "materials".
 MaterialSpec material_of(const std::string& name, const JsonNode& node);
 
+/// Number of the material that `user` names, which must be a ply material or one of surfaces; without a name, of the
+/// default of that sort, which is made once. `path` of the user, for its errors.
+int find_material(Scene& scene, const JsonNode& user, const std::string& path, bool ply);
+
 }  // namespace wale

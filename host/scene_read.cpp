@@ -7,11 +7,12 @@
 #include "host/animation.h"
 #include "host/file_fence.h"
 #include "host/scene.h"
+#include "host/scene_fabrics.h"
 #include "host/scene_materials.h"
 #include "host/scene_nodes.h"
 #include "host/scene_overrides.h"
 #include "host/scene_schema.h"
-#include "host/suggest.h"
+#include "host/scene_sources.h"
 
 namespace wale {
 namespace {
@@ -30,82 +31,6 @@ void check_view(const JsonNode& node, const std::string& path) {
   const dvec3 up = glm::normalize(nonzero_direction(up_node, path + ".up"));
   if (glm::length(glm::cross(glm::normalize(line), up)) < 1e-6)
     fail(up_node, path + ".up", "parallel to the line from position to look_at; choose another direction");
-}
-
-// When a scene is looked at, the folder that its files are relative to, and which of them it may name.
-struct Moment {
-  double frame;
-  std::filesystem::path folder;
-  FileFence* fence;
-};
-
-Transform transform_of(const JsonNode& node) {
-  return {number_of(node, "scale"), vector_of(node["rotate"]), vector_of(node["translate"])};
-}
-
-long whole_of(const JsonNode& node, std::string_view key) { return std::lround(number_of(node, key)); }
-
-// What the schema cannot say of files of frames: that they are there, and which.
-SequenceSource sequence_of(const JsonNode& node, const Moment& moment) {
-  SequenceSource out;
-  if (node.has("cache")) {
-    out.base = node["file"].text;
-    out.cache = node["cache"].text;
-  } else {
-    out.frames = std::filesystem::absolute(moment.folder / node["frames"].text).lexically_normal();
-    if (moment.fence && !moment.fence->admits_all(out.frames))
-      fail(node["frames"], "frames", "{}", moment.fence->refusal(node["frames"].text));
-  }
-  out.first = whole_of(node, "first");
-  out.step = whole_of(node, "step");
-  if (out.step == 0) fail(node["step"], "step", "0 shows one file only; name it as \"file\", or give 1 or more");
-  if (node.has("last")) out.last = whole_of(node, "last");
-  out.rest = whole_of(node, "rest");
-  out.hold = node["missing"].text == "hold";
-  out.changing = node["topology"].text == "changing";
-  return out;
-}
-
-MeshSource mesh_of(const JsonNode& node, const Moment& moment) {
-  MeshSource mesh;
-  if (node.kind == JsonNode::Kind::string) {
-    mesh.file = node.text;
-  } else if (node.has("frames") || node.has("cache")) {
-    mesh.sequence = sequence_of(node, moment);
-    mesh.frame = moment.frame;
-  } else if (node.has("file")) {
-    mesh.file = node["file"].text;
-  } else {
-    mesh.generator = node["generator"].text;
-    const std::pair<const char*, double*> sizes[] = {{"width", &mesh.width},
-                                                     {"height", &mesh.height},
-                                                     {"radius", &mesh.radius},
-                                                     {"thickness", &mesh.thickness},
-                                                     {"length", &mesh.length},
-                                                     {"size", &mesh.size},
-                                                     {"sphere_radius", &mesh.sphere_radius}};
-    for (const auto& [key, value] : sizes)
-      if (node.has(key)) *value = number_of(node, key);
-    mesh.nu = integer_of(node, "nu");
-    mesh.nv = node.has("nv") ? integer_of(node, "nv") : mesh.nu;
-  }
-  return mesh;
-}
-
-PatternSource pattern_of(const JsonNode& node) {
-  PatternSource pattern;
-  if (node.kind == JsonNode::Kind::string) {
-    pattern.file = node.text;
-  } else if (node.has("builtin")) {
-    pattern.builtin = node["builtin"].text;
-  } else {
-    pattern.file = node["file"].text;
-    if (node.has("period")) pattern.hints.period = pair_of(node["period"]);
-    if (node.has("yarn_radius")) pattern.hints.yarn_radius = number_of(node, "yarn_radius");
-    if (node.has("stitches")) pattern.hints.stitches = ivec2(pair_of(node["stitches"]));
-    if (node.has("unit")) pattern.hints.unit = number_of(node, "unit");
-  }
-  return pattern;
 }
 
 CameraScene camera_of(const JsonNode& node) {
@@ -165,99 +90,7 @@ AnimationScene animation_of(const JsonNode& node) {
   return out;
 }
 
-// Finds a material of the wanted sort; without a name, the default of that sort is made once.
-int find_material(Scene& scene, const JsonNode& user, const std::string& path, bool ply) {
-  const JsonNode* name = user.find("material");
-  const std::string wanted = name ? name->text : ply ? "(wool)" : "(grey)";
-  std::vector<std::string> fitting;
-  for (size_t i = 0; i < scene.materials.size(); ++i) {
-    const MaterialSpec& material = scene.materials[i];
-    if (material.name == wanted && material.ply == ply) return int(i);
-    if (material.name == wanted)
-      fail(*name, path + ".material", "\"{}\" is a {} material; {} is needed here", wanted,
-           material.ply              ? "ply"
-           : material.surface.coated ? "coated"
-                                     : "diffuse",
-           ply ? "one of type \"ply\"" : "one of type \"diffuse\" or \"coated\"");
-    if (material.ply == ply) fitting.push_back(material.name);
-  }
-  if (name) fail(*name, path + ".material", "no material is named \"{}\"; {}", wanted, nearest_choice(wanted, fitting));
-  MaterialSpec made;
-  made.name = wanted;
-  made.ply = ply;
-  scene.materials.push_back(made);
-  return int(scene.materials.size()) - 1;
-}
-
-FabricScale scale_of(const JsonNode& node) {
-  constexpr double kPerMetre = 10;  // gauge is per 10 cm
-  FabricScale scale;
-  if (node.has("repeats")) {
-    scale.repeats = pair_of(node["repeats"]);
-  } else if (node.has("gauge")) {
-    const JsonNode& gauge = node["gauge"];
-    scale.kind = FabricScale::Kind::gauge;
-    scale.gauge = {kPerMetre * number_of(gauge, "wales"),
-                   gauge.has("courses") ? kPerMetre * number_of(gauge, "courses") : 0.0};
-  } else {
-    scale.kind = FabricScale::Kind::uv_metres;
-  }
-  return scale;
-}
-
-Detail detail_of(const std::string& word) {
-  return word == "none"    ? Detail::none
-         : word == "paper" ? Detail::paper
-         : word == "maps"  ? Detail::maps
-                           : Detail::fibres;
-}
-
-Storage storage_of(const std::string& word) {
-  return word == "auto" ? Storage::automatic : word == "stored" ? Storage::stored : Storage::procedural;
-}
-
-FlyawaySpec flyaways_of(const JsonNode& node, const std::string& path) {
-  constexpr double kPerMillimetre = 1e3;
-  for (const auto& [key, most] : {std::pair{"length", kLongestFlyaway}, std::pair{"radius", kThickestFlyaway}})
-    if (number_of(node, key) > most)
-      fail(node[key], path + ".flyaways." + key, "{:g} mm is longer than any; valid: 0 to {:g} mm",
-           kPerMillimetre * number_of(node, key), kPerMillimetre * most);
-  return {kPerMillimetre * number_of(node, "hairs"), kPerMillimetre * number_of(node, "loops"),
-          number_of(node, "length"), number_of(node, "radius")};
-}
-
-FabricScene fabric_of(Scene& scene, const JsonNode& node, size_t index, const Moment& moment) {
-  const std::string path = fmt::format("fabrics.{}", index);
-  const JsonNode& yarn = node["yarn"];
-  FabricScene fabric;
-  fabric.spec.name = text_or(node, "name", fmt::format("fabric{}", index));
-  fabric.spec.scale = scale_of(node);
-  fabric.spec.plies = integer_of(yarn, "plies");
-  fabric.spec.twist_pitch = number_of(yarn, "twist_pitch");
-  fabric.spec.thickness = number_of(yarn, "thickness");
-  fabric.spec.ply_radius = number_of(yarn, "ply_radius");
-  fabric.spec.height_offset = number_of(node, "height_offset");
-  fabric.spec.tolerance = number_of(node, "tolerance");
-  fabric.spec.flyaways = flyaways_of(node["flyaways"], path);
-  fabric.spec.detail = detail_of(node["detail"].text);
-  fabric.spec.strain = node["strain"].text == "relaxed" ? LoopStrain::relaxed : LoopStrain::affine;
-  fabric.spec.storage = storage_of(node["storage"].text);
-  fabric.spec.lattice = integer_of(node, "lattice");
-  fabric.mesh = mesh_of(node["mesh"], moment);
-  fabric.transform = transform_of(node["transform"]);
-  fabric.pattern = pattern_of(node["pattern"]);
-  fabric.material = find_material(scene, node, path, true);
-  if (const JsonNode* palette = node.find("palette")) {
-    fabric.palette.emplace();
-    for (const JsonNode& color : palette->items) fabric.palette->push_back(color_of(color));
-  }
-  if (const JsonNode* image = node.find("color_image"))
-    fabric.color_image = {(*image)["file"].text, (*image)["map"].text == "stitches", pair_of((*image)["origin"]),
-                          pair_of((*image)["size"]), (*image)["repeat"].boolean};
-  return fabric;
-}
-
-ObjectScene object_of(Scene& scene, const JsonNode& node, size_t index, const Moment& moment) {
+ObjectScene object_of(Scene& scene, const JsonNode& node, size_t index, const SceneMoment& moment) {
   const std::string path = fmt::format("objects.{}", index);
   ObjectScene object;
   object.name = text_or(node, "name", fmt::format("object{}", index));
@@ -279,7 +112,7 @@ ObjectScene object_of(Scene& scene, const JsonNode& node, size_t index, const Mo
   return object;
 }
 
-LightScene light_of(const JsonNode& node, size_t index, const Moment& moment) {
+LightScene light_of(const JsonNode& node, size_t index, const SceneMoment& moment) {
   const std::string path = fmt::format("lights.{}", index);
   const std::string& type = node["type"].text;
   LightScene light;
@@ -349,7 +182,7 @@ Scene scene_of(JsonNode root, const std::filesystem::path& file, const std::vect
   scene.film = film_of(root["film"]);
   scene.integrator = integrator_of(root["integrator"]);
   scene.animation = animation_of(root["animation"]);
-  const Moment moment{scene.animation.frame, context.folder, fence};
+  const SceneMoment moment{scene.animation.frame, context.folder, fence};
   for (const auto& member : root["materials"].members) scene.materials.push_back(material_of(member.key, member.value));
   for (const char* key : {"fabrics", "objects", "lights"}) check_names(root[key], key);
   for (size_t i = 0; i < root["fabrics"].items.size(); ++i)

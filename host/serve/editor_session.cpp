@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
 #include "geom/error.h"
 #include "host/display_picture.h"
@@ -19,36 +17,7 @@ using Kind = EditorRequest::Kind;
 using Clock = std::chrono::steady_clock;
 using Texts = std::vector<std::string>;
 
-constexpr int kJpegQuality = 90;
-constexpr std::chrono::milliseconds kStateInterval{40}, kIdle{100};
-// An edit that would knit for minutes is refused: more than these, and than twice what the scene was opened with.
-constexpr double kMostSegments = 2e7;
-
-// The scene's film, made smaller until it fits.
-void fit(FilmScene& film, int width, int height) {
-  const double share = std::min({1.0, double(width) / film.width, double(height) / film.height});
-  film.width = std::max(1, int(std::lround(share * film.width)));
-  film.height = std::max(1, int(std::lround(share * film.height)));
-}
-
-// What tracing depends on; the rest is how the picture is shown.
-std::vector<Scene> traced(std::vector<Scene> scenes) {
-  for (Scene& scene : scenes) {
-    scene.film.exposure = FilmScene{}.exposure;
-    scene.film.view = FilmScene{}.view;
-  }
-  return scenes;
-}
-
-CameraScene camera_of(const World& world) {
-  const WCamera& c = world.camera;
-  const auto vec = [](const w_float4& v) { return dvec3(v.x, v.y, v.z); };
-  CameraScene out;
-  out.position = world.origin + vec(c.origin);
-  out.look_at = out.position + double(c.focus) * vec(c.forward);
-  out.up = vec(c.up);
-  return out;
-}
+constexpr std::chrono::milliseconds kStateInterval{40};
 
 }  // namespace
 
@@ -168,21 +137,6 @@ HttpReply EditorSession::picture(int view) {
   return reply;
 }
 
-EditorSession::Version EditorSession::newest() {
-  const std::lock_guard lock(mutex_);
-  Version version{revision_, edited_.version(), edited_.edits(), settings_, control_};
-  try {
-    for (const EditorView& view : editor_views(edited_, settings_, camera())) {
-      version.scenes.push_back(view.more.empty() ? edited_.scene() : edited_.scene_with(view.more));
-      fit(version.scenes.back().film, options_.width, options_.height);
-    }
-  } catch (const Error& error) {  // a file that it names has gone
-    if (error.fault() != wale::Fault::user) throw;
-    version.fault = error.what();
-  }
-  return version;
-}
-
 std::string EditorSession::state_json() const {
   return state_message(revision_, edited_, settings_, editor_views(edited_, settings_, camera()), fault_);
 }
@@ -194,140 +148,6 @@ void EditorSession::publish_state(bool now) {
   feed_.publish("state", "application/json", state_json());
   dirty_ = false;
   last_state_ = Clock::now();
-}
-
-void EditorSession::publish_picture(size_t view, const Version& version, ProgressiveRender& render) {
-  const FilmScene& film = version.scenes[view].film;
-  auto shown = std::make_shared<Shown>(Shown{render.picture(), film.exposure, film.view});
-  const std::string jpeg = display_jpeg(shown->image, shown->exposure, shown->view, kJpegQuality);
-  const RenderState& s = render.state();
-  feed_.publish(fmt::format("picture.{}", view), "image/jpeg", jpeg,
-                {{"X-Wale-Revision", std::to_string(version.revision)},
-                 {"X-Wale-Size", fmt::format("{}x{}", film.width, film.height)},
-                 {"X-Wale-Shrink", std::to_string(s.shrink)},
-                 {"X-Wale-Samples", std::to_string(s.samples)}});
-  const std::lock_guard lock(mutex_);
-  shown_.resize(std::max(shown_.size(), view + 1));
-  shown_[view] = std::move(shown);
-}
-
-// The version shown before it is the newest again, where nobody has edited on. False where this is that version: its
-// files have changed, and nothing can be shown until the next edit.
-bool EditorSession::refuse(const Version& version, const std::string& line) {
-  bool another = true;
-  {
-    const std::lock_guard lock(mutex_);
-    if (revision_ == version.revision) {
-      another = std::exchange(settings_, good_settings_) != good_settings_;
-      try {
-        another |= edited_.withdraw(version.scene);
-      } catch (const Error& error) {  // what was shown cannot be read any more
-        if (error.fault() != wale::Fault::user) throw;
-      }
-      revision_ += another;
-      fault_ = RefusedEdit{version.control, line};
-      dirty_ = true;
-    }
-  }
-  publish_state(true);
-  return another;
-}
-
-// It is what the views show.
-void EditorSession::confirm(const Version& version) {
-  const std::lock_guard lock(mutex_);
-  for (size_t v = version.scenes.size(); v < shown_.size(); ++v) feed_.forget(fmt::format("picture.{}", v));
-  shown_.resize(version.scenes.size());
-  edited_.confirm(version.scene, version.edits);
-  good_settings_ = version.settings;
-}
-
-bool EditorSession::newer_than(const Version& version) const {
-  const std::lock_guard lock(mutex_);
-  return stop_ || revision_ != version.revision;
-}
-
-void EditorSession::run(std::span<const Device> device, const Loaders& loaders,
-                        const std::function<bool()>& stop_asked) {
-  LiveViews views(device, loaders, options_.kernel_dir);
-  Version version;     // revision 0: none yet
-  uint64_t shown = 0;  // revision that the views are of; 0 = none, as files that they need have changed
-  Redone redone;
-  uint64_t told = 0;  // samples that were not finite
-  const auto publish_cost = [&](const std::string& status, const Version& of) {
-    feed_.publish("cost", "application/json",
-                  cost_message(status, of.revision, of.settings.goal, views, redone, feed_.viewers()));
-  };
-  const auto wait = [&] {
-    std::unique_lock lock(mutex_);
-    if (revision_ == version.revision && !stop_) wake_.wait_for(lock, kIdle);
-  };
-  while (!stop_asked() && !stopped()) {
-    publish_state(false);
-    if (newer_than(version)) {
-      Version next = newest();
-      const bool first = version.revision == 0;
-      if (shown == version.revision && next.fault.empty() && traced(next.scenes) == traced(version.scenes)) {
-        version = std::move(next);
-        shown = version.revision;
-        confirm(version);
-        for (size_t v = 0; v < views.count(); ++v)
-          if (views.render(v).state().shrink > 0) publish_picture(v, version, views.render(v));
-        publish_cost("rendering", version);
-        continue;
-      }
-      publish_cost(first ? "starting" : "changing", next);
-      try {
-        if (!next.fault.empty()) user_error("{}", next.fault);
-        redone = views.show(next.scenes);
-      } catch (const Error& error) {
-        if (error.fault() != wale::Fault::user || first) throw;
-        version.revision = next.revision;  // refuse() makes another one when nobody else did
-        shown = 0;
-        refuse(next, error.what());
-        continue;
-      }
-      version = std::move(next);
-      shown = version.revision;
-      if (first) {
-        views.limit_segments(std::max(kMostSegments, 2.0 * double(views.segments())));
-        const std::lock_guard lock(mutex_);
-        framed_ = camera_of(views.world());
-      }
-      confirm(version);
-    }
-    if (shown != version.revision) {
-      wait();
-      continue;
-    }
-    const auto view = views.next(version.settings.goal);
-    if (!view) {
-      publish_cost("done", version);
-      wait();
-      continue;
-    }
-    bool due = false;
-    try {
-      while (!due && !newer_than(version) && !stop_asked()) due = views.step(*view);
-    } catch (const Error& error) {  // two views take turns on the device, and files are read anew
-      if (error.fault() != wale::Fault::user) throw;
-      shown = 0;
-      refuse(version, error.what());
-      continue;
-    }
-    if (!due) continue;
-    publish_picture(*view, version, views.render(*view));
-    publish_cost("rendering", version);
-    if (const uint64_t now = views.progress(version.settings.goal).not_finite_since_start; now > told) {
-      if (told == 0 || now >= 2 * told) {  // a line each time that it has doubled
-        fmt::print(stderr, "wale: render: {} samples so far were not finite; the pictures are without them\n", now);
-        told = now;
-      }
-    }
-  }
-  stop();
-  if (const uint64_t count = views.progress(version.settings.goal).not_finite_since_start)
-    bug("render: {} samples were not finite; the pictures were shown without them", count);
 }
 
 void EditorSession::stop() {

@@ -70,7 +70,7 @@ const std::vector<Target>& targets() {
        pc2},
       {"scene",
        "scene files",
-       "host/scene_read.cpp",
+       "host/scene_read.cpp host/scene_fabrics.cpp host/scene_sources.cpp",
        false,
        {"\"fabrics\"", "\"materials\"", "\"lights\"", "\"objects\"", "\"camera\"", "\"type\"", "\"file\"",
         "\"units\": \"mm\"", "\"repeats\"", "1e999", "//", "/*", "tile.json", "mesh.obj"},
