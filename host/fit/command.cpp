@@ -26,6 +26,8 @@ namespace {
 
 using namespace wale::fit;
 
+constexpr double kNoisy = 10;  // times the loss
+
 // The ply material that is fitted, by name or because there is one.
 FitTarget target_of(const Scene& scene, const std::string& name) {
   std::vector<std::string> names;
@@ -178,7 +180,11 @@ int run_fit(const FitArgs& args, const Loaders& loaders) {
   }
   bar.finish();
 
-  const std::vector<std::string> doubts = parameter_warnings(settings, *result);
+  std::vector<std::string> doubts = parameter_warnings(settings, *result);
+  if (result->render_noise > kNoisy * std::abs(result->best.loss))
+    doubts.push_back(fmt::format(
+        "the renders' noise ({:.2g}) is far above the loss ({:.2g}), which may be a chance of it: --final-spp {} has half",
+        result->render_noise, result->best.loss, 2 * settings.final_samples));
   for (const std::string& doubt : doubts) {
     warnings.push_back(doubt);
     if (!args.quiet) fmt::print(stderr, "warning: {}\n", doubt);

@@ -72,7 +72,7 @@ constexpr const char* kStyle =
     R"(body{font:15px/1.45 sans-serif;color:#222;max-width:1080px;margin:2em auto;padding:0 1em}
 table{border-collapse:collapse;font-size:14px}td,th{padding:3px 10px;border-bottom:1px solid #ddd;text-align:right}
 td:first-child,th:first-child,td:last-child,th:last-child{text-align:left}.row{display:flex;flex-wrap:wrap;gap:12px}
-figure{margin:0}figcaption{font-size:13px;color:#555}img{image-rendering:pixelated}tr.bad{background:#fbeeee}
+figure{margin:0;width:32%}figcaption{font-size:13px;color:#555}img{image-rendering:pixelated;width:100%}tr.bad{background:#fbeeee}
 svg{max-width:100%;height:auto})";
 
 std::string remark(const FittedParameter& p) {
