@@ -30,7 +30,7 @@ struct Features {
   bool double_precision = false;             ///< rays and shading in double, one lane
   bool relaxed_math = false;                 ///< the compiler may reorder and approximate
   bool aovs = false;
-  bool gradients = false;  ///< derivatives by the ply material, in the place of feature images
+  bool gradients = false;       ///< derivatives by the ply material, in the place of feature images
   bool mesh_warp = false;       ///< some plies are warped by the base mesh itself
   bool stored_lattice = false;  ///< some are warped by a lattice, and stored
   bool procedural = false;      ///< some leaves keep no points
@@ -49,8 +49,8 @@ struct Features {
   /// Definitions for the kernels.
   std::string options() const;
 
-  /// The same with the structure of others built in too, whether the scene has it or not; what is a choice (local stage,
-  /// lobes, arithmetic, lanes) stays as it is. The picture is the same, bit for bit.
+  /// The same with the structure of others built in too, whether the scene has it or not; what is a choice (local
+  /// stage, lobes, arithmetic, lanes) stays as it is. The picture is the same, bit for bit.
   Features with(const Features& others) const;
   /// Every structure that may be built in.
   static Features everything();

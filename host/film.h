@@ -33,8 +33,8 @@ PixelStatistics pixel_statistics(std::span<const w_float4> scrambles, const std:
 /// seen first).
 Image develop(const FilmSums& sums, const double origin[3]);
 
-/// The same where derivatives were gathered: R G B, variance.R/G/B, samples, then per channel those by the parameters of
-/// kernels/appearance/ply_gradient.clh: by.transmit.R/G/B, by.reflect, by.roughness (radian), by.tilt (tangent).
+/// The same where derivatives were gathered: R G B, variance.R/G/B, samples, then per channel those by the parameters
+/// of kernels/appearance/ply_gradient.clh: by.transmit.R/G/B, by.reflect, by.roughness (radian), by.tilt (tangent).
 Image develop_gradients(const FilmSums& sums);
 constexpr std::array<const char*, W_GRADIENT_COUNT> kGradientNames = {"by.transmit", "by.reflect", "by.roughness",
                                                                       "by.tilt"};

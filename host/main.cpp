@@ -126,11 +126,13 @@ void add_fit_options(CLI::App& command, wale::FitArgs& args) {
       ->check(CLI::Range(1, 100000));
   command.add_option("--method", args.method, "paths (derivatives along the paths), differences, or bobyqa")
       ->check(CLI::IsMember({"paths", "differences", "bobyqa"}));
-  command.add_option("--minutes", args.minutes, "end after that time with the best so far")->check(finite_number(false));
+  command.add_option("--minutes", args.minutes, "end after that time with the best so far")
+      ->check(finite_number(false));
   command.add_flag("--redo", args.redo, "begin anew, whatever an earlier run left");
   command.add_option("--report", args.report, "page to write (.html): pictures, loss, parameters");
   command.add_option("--progress", args.progress, "picture to write while it fits (.png)");
-  command.add_option("--transfer", args.transfer, "how the photographs' numbers follow from light; the file says it else")
+  command
+      .add_option("--transfer", args.transfer, "how the photographs' numbers follow from light; the file says it else")
       ->check(CLI::IsMember({"srgb", "linear"}));
   command.add_option("--grey", args.grey, "x,y,width,height of a grey reference in the front photograph, pixels");
   command.add_option("--grey-reflectance", args.grey_reflectance, "of it; 0.18 unless given");
@@ -148,7 +150,8 @@ void add_fit_options(CLI::App& command, wale::FitArgs& args) {
 
 void add_measure_options(CLI::App& command, wale::MeasureArgs& args) {
   command.add_option("--fabric", args.fabric, "name or number; the scene's only one unless given");
-  command.add_option("--scale", args.scale, "pixels per mm: lengths are in pixels; else in mm")->check(finite_number(false));
+  command.add_option("--scale", args.scale, "pixels per mm: lengths are in pixels; else in mm")
+      ->check(finite_number(false));
   const auto length = [&](const char* name, std::optional<double>& to, const char* doc) {
     command.add_option(name, to, doc)->check(finite_number(false));
   };
@@ -253,7 +256,8 @@ int run(int argc, char** argv) {
   add_fit_options(*c, fit);
   c->callback([&] { status = wale::run_fit(fit, loaders); });
   wale::MeasureArgs measure;
-  c = app.add_subcommand("measure", "turn lengths and angles measured on a picture into a scene's gauge, yarn and plies");
+  c = app.add_subcommand("measure",
+                         "turn lengths and angles measured on a picture into a scene's gauge, yarn and plies");
   add_scene_options(*c, measure);
   add_measure_options(*c, measure);
   c->callback([&] { status = wale::run_measure(measure, loaders); });

@@ -1,7 +1,6 @@
 // What a scene and the options of a render say to the device.
-#include "host/render.h"
-
 #include "geom/error.h"
+#include "host/render.h"
 
 namespace wale {
 

@@ -102,9 +102,9 @@ std::string report_html(const CostReport& report, const std::string& plot_svg) {
       html_text(report.scene), report.reference.width, report.reference.height, html_text(report.device),
       html_text(report.driver), html_text(report.date), html_text(report.command), duration_text(report.seconds_used),
       duration_text(60 * report.minutes), report.ended.empty() ? "" : "; ended early: " + html_text(report.ended));
-  out +=
-      fmt::format("<p>The scene as it is: {}.<br>The reference: {}; noise of its mean {} % (relative RMS).</p>\n",
-                  html_text(report.base_settings), html_text(report.reference_text), figure(100 * report.reference_noise));
+  out += fmt::format("<p>The scene as it is: {}.<br>The reference: {}; noise of its mean {} % (relative RMS).</p>\n",
+                     html_text(report.base_settings), html_text(report.reference_text),
+                     figure(100 * report.reference_noise));
   out += plot_svg.substr(std::min(plot_svg.find("<svg"), plot_svg.size()));
   out +=
       "\n<p>Each level changes one option of the scene. A level on the grey stair is beaten by no other in both price "
@@ -129,7 +129,8 @@ std::string report_html(const CostReport& report, const std::string& plot_svg) {
   std::string hidden;
   for (const Level& row : report.levels.rows)
     if (const UnitResult* r = report.result(row); r && !r->bias.resolved() && !report.is_reference(row))
-      hidden += fmt::format("<li>{} {}: {}\n", html_text(row.option), html_text(row.level), html_text(bias_of(report, row)));
+      hidden +=
+          fmt::format("<li>{} {}: {}\n", html_text(row.option), html_text(row.level), html_text(bias_of(report, row)));
   if (!hidden.empty()) out += "<h2>Not resolved from noise</h2>\n<ul>" + hidden + "</ul>\n";
   const double range = range_of(report);
   const std::vector<double> weights = relative_weights(report.reference);

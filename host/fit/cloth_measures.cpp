@@ -51,8 +51,9 @@ ClothParameters cloth_parameters(const ClothMeasures& m, double tile_radius, con
     const double expected = filling(plies) * radius;
     if (std::abs(ply_radius - expected) > kFills * expected) {
       out.ply_radius = ply_radius;
-      out.notes.push_back(fmt::format("{} plies that fill this yarn and touch would be {:.3g} mm thick: these {}", plies,
-                                      2000 * expected, ply_radius > expected ? "press into each other" : "lie apart"));
+      out.notes.push_back(fmt::format("{} plies that fill this yarn and touch would be {:.3g} mm thick: these {}",
+                                      plies, 2000 * expected,
+                                      ply_radius > expected ? "press into each other" : "lie apart"));
     } else {
       ply_radius = expected;
     }

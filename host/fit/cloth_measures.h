@@ -24,8 +24,8 @@ struct ClothParameters {
 };
 
 /// `tile_radius`: metres, of the tile's yarn at the measured gauge with a thickness of 1. A ply's axis winds at the
-/// distance R - r from the yarn's (R, r: radii), so that tan(angle) = 2 pi (R - r) / pitch; n touching plies that fill the
-/// yarn have r / R = s / (1 + s), s = sin(pi / n) (geom/fill_yarn.cpp). `own`: plies and twist of the scene.
+/// distance R - r from the yarn's (R, r: radii), so that tan(angle) = 2 pi (R - r) / pitch; n touching plies that fill
+/// the yarn have r / R = s / (1 + s), s = sin(pi / n) (geom/fill_yarn.cpp). `own`: plies and twist of the scene.
 struct OwnYarn {
   int plies = 3;
   double twist_pitch = 8;

@@ -48,9 +48,10 @@ FitTarget target_of(const Scene& scene, const std::string& name) {
   const MaterialSpec& material = scene.materials[*found];
   if (target.fabrics.empty()) user_error("{}: no fabric is made of '{}'", scene.file, material.name);
   const PlyAppearance& yarn = material.yarn;
-  const char* varies = !yarn.plies.empty() ? "plies" : !yarn.stripes.empty() ? "stripes"
-                       : yarn.heather_yarn > 0 || yarn.heather_ply > 0       ? "heather"
-                                                                             : nullptr;
+  const char* varies = !yarn.plies.empty()                             ? "plies"
+                       : !yarn.stripes.empty()                         ? "stripes"
+                       : yarn.heather_yarn > 0 || yarn.heather_ply > 0 ? "heather"
+                                                                       : nullptr;
   if (varies)
     user_error("{}: materials.{}.{}: a fit has one colour; take the key away (--set materials.{}.{}=null)", scene.file,
                material.name, varies, material.name, varies);
@@ -87,8 +88,8 @@ std::string identity_of(const FitArgs& args, const FitSettings& settings, const 
   std::string words = fmt::format(
       "{} {} {}x{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", scene_identity(args.scene, args.set), args.preset,
       scene.film.width, scene.film.height, scene.film.exposure, settings.target.material, settings.starts,
-      settings.samples, settings.final_samples, args.method, args.transfer, args.grey, args.gains, args.crop, args.corners,
-      args.grey_reflectance, args.front_exposure, args.back_exposure, args.terms, args.layers);
+      settings.samples, settings.final_samples, args.method, args.transfer, args.grey, args.gains, args.crop,
+      args.corners, args.grey_reflectance, args.front_exposure, args.back_exposure, args.terms, args.layers);
   words += args.unaligned ? " unaligned" : "";
   for (const FitParameter& p : settings.parameters) words += fmt::format(" {}={}..{}", p.name(), p.low, p.high);
   return fmt::format("{:016x}", hash_bytes(words, hash));
@@ -99,7 +100,7 @@ std::string progress_note(const FitJournal& journal, size_t starts) {
   for (const FitStep& s : journal.steps)
     if (s.start >= 0) best = std::min(best, s.loss);
   const int start = journal.steps.empty() ? -1 : journal.steps.back().start;
-  const std::string where = start < 0                ? "looking for starts"
+  const std::string where = start < 0             ? "looking for starts"
                             : start < int(starts) ? fmt::format("start {} of {}", start + 1, starts)
                                                   : "from the best";
   return fmt::format("{}, {} pairs{}", where, journal.steps.size(),
@@ -139,9 +140,10 @@ int run_fit(const FitArgs& args, const Loaders& loaders) {
   for (Picture* side : {&photographs.front, &photographs.back})
     if (side->count()) *side = at_resolution(*side, scene.film.width, scene.film.height);
   if (sides != std::array{true, true})
-    warnings.push_back(fmt::format(
-        "only the photograph lit from the {} is given: how light is shared between transmission and reflection is not in it",
-        sides[0] ? "front" : "back"));
+    warnings.push_back(
+        fmt::format("only the photograph lit from the {} is given: how light is shared between transmission and "
+                    "reflection is not in it",
+                    sides[0] ? "front" : "back"));
   const NamedLoss loss(args, photographs, warnings);
   if (!args.quiet)
     for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
@@ -156,7 +158,8 @@ int run_fit(const FitArgs& args, const Loaders& loaders) {
 
   const Device device = Device::open(one_device_number(args.device));
   LitPair renderer(device, loaders, args.kernel_dir, sides);
-  Fit fit(scene, renderer, [&](const PicturePair& pair) { return loss.residuals(pair); }, settings);
+  Fit fit(
+      scene, renderer, [&](const PicturePair& pair) { return loss.residuals(pair); }, settings);
   catch_stop_signals();
   Progress bar("fit", args.quiet);
   double written = 0;
@@ -182,9 +185,10 @@ int run_fit(const FitArgs& args, const Loaders& loaders) {
 
   std::vector<std::string> doubts = parameter_warnings(settings, *result);
   if (result->render_noise > kNoisy * std::abs(result->best.loss))
-    doubts.push_back(fmt::format(
-        "the renders' noise ({:.2g}) is far above the loss ({:.2g}), which may be a chance of it: --final-spp {} has half",
-        result->render_noise, result->best.loss, 2 * settings.final_samples));
+    doubts.push_back(
+        fmt::format("the renders' noise ({:.2g}) is far above the loss ({:.2g}), which may be a chance of it: "
+                    "--final-spp {} has half",
+                    result->render_noise, result->best.loss, 2 * settings.final_samples));
   for (const std::string& doubt : doubts) {
     warnings.push_back(doubt);
     if (!args.quiet) fmt::print(stderr, "warning: {}\n", doubt);
@@ -204,7 +208,8 @@ int run_fit(const FitArgs& args, const Loaders& loaders) {
   if (!result->best.converged && !result->out_of_time) {
     write_journal(journal, identity, journal_path);
     user_error(
-        "{}: the fit had not converged after {} pairs of renders, loss {:.4g}; nothing was written; --evaluations {} goes on "
+        "{}: the fit had not converged after {} pairs of renders, loss {:.4g}; nothing was written; --evaluations {} "
+        "goes on "
         "from there",
         args.output.string(), result->best.evaluations, result->best.loss, 2 * settings.evaluations);
   }

@@ -98,10 +98,11 @@ int run_measure(const MeasureArgs& args, const Loaders& loaders) {
   if (p.thickness && std::abs(*p.thickness - 1) > 0.15) {
     std::string knit = fmt::format("wale knit CHART -o tile.json --yarn {:.4g}", *m.yarn / kMillimetre);
     if (p.wales) knit += fmt::format(" --wales {:.4g}", *p.wales);
-    fmt::print(stderr,
-               "note: the tile's yarn is {:.3g} mm thick at this gauge; scaling it to {:.3g} mm leaves its loops as they "
-               "are. A tile of its own has them as such yarn lies: {}\n",
-               2000 * tile_radius, *m.yarn / kMillimetre, knit);
+    fmt::print(
+        stderr,
+        "note: the tile's yarn is {:.3g} mm thick at this gauge; scaling it to {:.3g} mm leaves its loops as they "
+        "are. A tile of its own has them as such yarn lies: {}\n",
+        2000 * tile_radius, *m.yarn / kMillimetre, knit);
   }
   return 0;
 }

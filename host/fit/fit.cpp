@@ -66,8 +66,7 @@ Residuals Fit::evaluate(std::span<const double> places, int samples, bool deriva
     const LitPair::WithGradients rendered = renderer_.render_with_gradients(scene, std::max(1, samples / 2), seed);
     add(mean, rendered.pictures, replicate.values);
     for (size_t k = 0; k < settings_.parameters.size(); ++k)
-      replicate.derivatives.push_back(
-          residual_derivative(residuals_, rendered, settings_.parameters[k], places[k]));
+      replicate.derivatives.push_back(residual_derivative(residuals_, rendered, settings_.parameters[k], places[k]));
   }
   pictures_ = std::move(mean);
   return out;
@@ -151,12 +150,9 @@ FitStart Fit::descend(FitJournal& journal, int number, const std::vector<double>
   options.evaluations = left;
   options.least_step = kLeastStep;
   options.stop = ended;
-  const LeastSquaresResult r = least_squares(
-      [&](std::span<const double> x, bool derivatives) {
-        return evaluate(x, samples, derivatives);
-      },
-      begin, options,
-      [&](std::span<const double> x, double loss, bool) { note(x, loss); });
+  const LeastSquaresResult r =
+      least_squares([&](std::span<const double> x, bool derivatives) { return evaluate(x, samples, derivatives); },
+                    begin, options, [&](std::span<const double> x, double loss, bool) { note(x, loss); });
   out.to = r.x, out.loss = r.residuals.loss(), out.converged = r.converged;
   return out;
 }

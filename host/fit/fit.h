@@ -23,11 +23,11 @@ struct FitSettings {
   std::vector<FitParameter> parameters;
   FitTarget target;
   FitMethod method = FitMethod::paths;
-  int starts = 3;         ///< places that are descended from
-  int samples = 32;       ///< paths a pixel, half of them for each of two independent renders
+  int starts = 3;           ///< places that are descended from
+  int samples = 32;         ///< paths a pixel, half of them for each of two independent renders
   int final_samples = 256;  ///< the same once more, from the best place that descents end at
-  int evaluations = 150;  ///< pairs of pictures for one start, at most
-  double seconds = 0;     ///< > 0: descents end then, converged or not
+  int evaluations = 150;    ///< pairs of pictures for one start, at most
+  double seconds = 0;       ///< > 0: descents end then, converged or not
   uint32_t seed = 1;
 };
 
@@ -41,7 +41,8 @@ struct FitStart {
 
 /// One pair of pictures that was rendered on the way.
 struct FitStep {
-  int start = -1;  ///< which descent; -1: looking for starts; after the last start: from the best of them, with more samples
+  int start =
+      -1;  ///< which descent; -1: looking for starts; after the last start: from the best of them, with more samples
   double seconds = 0;
   double loss = 0;
   std::vector<double> places;
@@ -65,25 +66,23 @@ struct FittedParameter {
 struct FitResult {
   FitStart best;
   std::vector<FittedParameter> parameters;
-  bool out_of_time = false;  ///< some descent was cut short
+  bool out_of_time = false;                      ///< some descent was cut short
   std::vector<std::pair<size_t, size_t>> alike;  ///< parameters whose errors go together (correlation above 0.95)
   double render_noise = 0;                       ///< loss that the noise of the renders alone makes
   PicturePair pictures;
   Scene scene;  ///< with the fitted material
 };
 
-
-
 struct FitProgress {
   const FitJournal* journal = nullptr;
   const PicturePair* pictures = nullptr;  ///< of the last step
-  bool better = false;                             ///< than all before
+  bool better = false;                    ///< than all before
 };
 
 /// Fits a scene's material. The loss is the sum of products of the residuals of two independent renders: squares of one
-/// would hold its noise, which some materials make more of than others. Deterministic: every pair is rendered with the same paths as far as the material lets them, so
-/// that the loss is smooth. Stops early, with nothing returned, when `stop` says so; the journal then lets another run
-/// go on.
+/// would hold its noise, which some materials make more of than others. Deterministic: every pair is rendered with the
+/// same paths as far as the material lets them, so that the loss is smooth. Stops early, with nothing returned, when
+/// `stop` says so; the journal then lets another run go on.
 class Fit {
  public:
   Fit(const Scene& scene, LitPair& renderer, PairResiduals residuals, FitSettings settings);

@@ -69,7 +69,8 @@ std::optional<FitJournal> read_journal(const std::filesystem::path& file, const 
                file.string());
   FitJournal out;
   out.seconds = number_in(root, "seconds", file);
-  for (const JsonNode& places : list_in(root, "chosen", file).items) out.chosen.push_back(places_in(places, axes, file));
+  for (const JsonNode& places : list_in(root, "chosen", file).items)
+    out.chosen.push_back(places_in(places, axes, file));
   for (const JsonNode& node : list_in(root, "finished", file).items) {
     FitStart s;
     s.from = places_in(list_in(node, "from", file), axes, file);

@@ -170,8 +170,7 @@ class Descent {
       const Eigen::SelfAdjointEigenSolver<Matrix> curvature(normal.h(open, open));
       const Vector down = curvature.eigenvectors().transpose() * -normal.g(open);
       const Vector s =
-          curvature.eigenvectors() *
-          (down.array() / (curvature.eigenvalues().array().max(0.0) + damping)).matrix();
+          curvature.eigenvectors() * (down.array() / (curvature.eigenvalues().array().max(0.0) + damping)).matrix();
       for (size_t i = 0; i < open.size(); ++i) step[open[i]] = s[Eigen::Index(i)];
       bool again = false;
       for (const Eigen::Index k : open) {
@@ -240,7 +239,8 @@ ParameterErrors parameter_errors(const Residuals& residuals) {
     for (size_t k = 0; k < axes; ++k) known[k] = known[k] && std::abs(v(Eigen::Index(k))) < kApart;
   }
   // The fit rests on the mean of the replicates, noise and all.
-  const Vector mean = 0.5 * (vector_of(residuals.replicates.front().values) + vector_of(residuals.replicates.back().values));
+  const Vector mean =
+      0.5 * (vector_of(residuals.replicates.front().values) + vector_of(residuals.replicates.back().values));
   covariance *= mean.squaredNorm() / double(std::max<Eigen::Index>(1, rows - n));
   for (size_t a = 0; a < axes; ++a) {
     if (!known[a]) continue;

@@ -41,8 +41,8 @@ Scene lit_from(const Scene& scene, size_t side) {
   const bool any = std::any_of(lit.lights.begin(), lit.lights.end(),
                                [&](const LightScene& light) { return light.name.starts_with(kLitSides[side]); });
   if (!any)
-    user_error("{}: lights: none is the {} light of the photographs; give one a name that begins with \"{}\"", scene.file,
-               kLitSides[side], kLitSides[side]);
+    user_error("{}: lights: none is the {} light of the photographs; give one a name that begins with \"{}\"",
+               scene.file, kLitSides[side], kLitSides[side]);
   return lit;
 }
 

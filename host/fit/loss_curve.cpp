@@ -32,10 +32,11 @@ std::string loss_curve_svg(const FitJournal& journal) {
       kWidth, kHeight, kWidth);
   for (double e = first; e <= last; ++e)
     out += fmt::format(
-        "<line x1={:.1f} x2={:.1f} y1={:.1f} y2={:.1f} stroke=#ddd /><text x={:.1f} y={:.1f} text-anchor=end>1e{:g}</text>\n",
+        "<line x1={:.1f} x2={:.1f} y1={:.1f} y2={:.1f} stroke=#ddd /><text x={:.1f} y={:.1f} "
+        "text-anchor=end>1e{:g}</text>\n",
         kLeft, kWidth - kMargin, y(std::pow(10, e)), y(std::pow(10, e)), kLeft - 6, y(std::pow(10, e)) + 4, e);
-  out += fmt::format("<text x={:.1f} y={:.1f} text-anchor=middle>pairs of renders ({})</text>\n",
-                     (kLeft + kWidth) / 2, kHeight - 10, journal.steps.size());
+  out += fmt::format("<text x={:.1f} y={:.1f} text-anchor=middle>pairs of renders ({})</text>\n", (kLeft + kWidth) / 2,
+                     kHeight - 10, journal.steps.size());
   int most = 0;
   for (const FitStep& s : journal.steps) most = std::max(most, s.start + 1);
   for (int k = 0; k < most; ++k) {

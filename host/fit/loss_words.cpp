@@ -28,7 +28,8 @@ std::vector<Word> weighted_words(const std::string& text, const char* option) {
     if (equals != std::string::npos) {
       const std::string number = part.substr(equals + 1);
       const auto [rest, error] = std::from_chars(number.data(), number.data() + number.size(), word.weight);
-      if (error != std::errc() || rest != number.data() + number.size() || !std::isfinite(word.weight) || word.weight < 0)
+      if (error != std::errc() || rest != number.data() + number.size() || !std::isfinite(word.weight) ||
+          word.weight < 0)
         user_error("{}: {}: '{}' is no weight; valid: a number of at least 0", option, word.name, number);
     }
     for (const Word& before : out)

@@ -87,8 +87,7 @@ std::string other_settings(const Scene& scene, const FitTarget& target, std::spa
     const double value = short_number(p.group->get(scene, target, p.k));
     if (name == "exposure") out += fmt::format("--set film.exposure={:g}\n", value);
     if (!p.group->geometry) continue;
-    for (const size_t f : target.fabrics)
-      out += fmt::format("--set fabrics.{}.yarn.{}={:g}\n", f, name, value);
+    for (const size_t f : target.fabrics) out += fmt::format("--set fabrics.{}.yarn.{}={:g}\n", f, name, value);
   }
   return out;
 }

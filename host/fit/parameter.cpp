@@ -75,8 +75,7 @@ const std::array<ParameterGroup, 12> kGroups = {{
      }},
     {"fibre_twist", 1, -40, 40, false, true, false, "degrees", "angle of the surface fibres to the ply axis",
      [](const Scene& s, const FitTarget& t, int) { return std::atan(ply_material(yarn_of(s, t)).tilt) / kDegree; },
-     [](Scene& s, const FitTarget& t, int, double v) { yarn_of(s, t).fibre_twist = v * kDegree; },
-     W_GRADIENT_TILT,
+     [](Scene& s, const FitTarget& t, int, double v) { yarn_of(s, t).fibre_twist = v * kDegree; }, W_GRADIENT_TILT,
      [](double v) {
        const double tangent = std::tan(v * kDegree);
        return (1 + tangent * tangent) * kDegree;
@@ -173,7 +172,8 @@ std::vector<FitParameter> fit_parameters(const std::string& text) {
     const size_t equals = word.find('=');
     const std::string name = word.substr(0, equals);
     const auto group = std::find_if(kGroups.begin(), kGroups.end(), [&](const auto& g) { return g.name == name; });
-    if (group == kGroups.end()) user_error("{}: no parameter is called '{}'; {}", kOption, name, nearest_choice(name, group_names()));
+    if (group == kGroups.end())
+      user_error("{}: no parameter is called '{}'; {}", kOption, name, nearest_choice(name, group_names()));
     if (std::any_of(out.begin(), out.end(), [&](const auto& p) { return p.group == &*group; }))
       user_error("{}: {} is named twice", kOption, name);
     double low = group->low, high = group->high;
@@ -181,13 +181,13 @@ std::vector<FitParameter> fit_parameters(const std::string& text) {
       const std::string range = word.substr(equals + 1);
       const size_t dots = range.find("..");
       if (dots == std::string::npos)
-        user_error("{}: {}: bounds are two numbers, for example {}={:g}..{:g}, not '{}'", kOption, name, name, low, high,
-                   range);
+        user_error("{}: {}: bounds are two numbers, for example {}={:g}..{:g}, not '{}'", kOption, name, name, low,
+                   high, range);
       low = bound(range.substr(0, dots), name);
       high = bound(range.substr(dots + 2), name);
       if (!(low < high) || low < group->low || high > group->high)
-        user_error("{}: {}: bounds {:g}..{:g}; valid: two numbers in rising order within {:g}..{:g}", kOption, name, low,
-                   high, group->low, group->high);
+        user_error("{}: {}: bounds {:g}..{:g}; valid: two numbers in rising order within {:g}..{:g}", kOption, name,
+                   low, high, group->low, group->high);
     }
     add(*group, low, high);
   }

@@ -53,8 +53,8 @@ struct FitParameter {
 };
 
 /// Reads what is to be fitted: names of groups with commas between them, each with bounds if others are wanted
-/// ("transmit,reflect,roughness=5..30"); empty: the usual ones. Throws a user error that names the option and the nearest
-/// valid choice.
+/// ("transmit,reflect,roughness=5..30"); empty: the usual ones. Throws a user error that names the option and the
+/// nearest valid choice.
 std::vector<FitParameter> fit_parameters(const std::string& text);
 
 /// Puts the values at these places into a scene whose material gives body colours; what it gave in another way

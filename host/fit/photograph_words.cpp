@@ -21,7 +21,8 @@ std::vector<double> numbers(const std::string& text, size_t count, const char* o
     at = next + 1;
   }
   if (!good || out.size() != count)
-    user_error("{}: '{}': {} numbers with commas between them are needed, for example {}", option, text, count, example);
+    user_error("{}: '{}': {} numbers with commas between them are needed, for example {}", option, text, count,
+               example);
   return out;
 }
 

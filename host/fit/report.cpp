@@ -12,7 +12,7 @@
 namespace wale::fit {
 namespace {
 
-constexpr int kShownSide = 320;    // pixels of a picture on the page, at least
+constexpr int kShownSide = 320;      // pixels of a picture on the page, at least
 constexpr double kFullColour = 0.5;  // difference of the photograph's mean that is shown in full colour
 
 std::string figure(double value) { return fmt::format("{:.3g}", value); }
@@ -61,7 +61,8 @@ std::string side_row(const FitReport& report, const char* side, const Picture& p
   if (photograph.count() == 0) return {};
   return fmt::format(
       "<h3>Lit from the {0}</h3>\n<div class=row><figure>{1}<figcaption>photograph, mean {2}</figcaption></figure>"
-      "<figure>{3}<figcaption>render, mean {4}</figcaption></figure><figure>{5}<figcaption>difference: red is brighter, "
+      "<figure>{3}<figcaption>render, mean {4}</figcaption></figure><figure>{5}<figcaption>difference: red is "
+      "brighter, "
       "blue darker, full colour at {6:g} % of the mean</figcaption></figure></div>\n",
       side, look(report, photograph, fmt::format("photograph lit from the {}", side)), mean_text(photograph),
       look(report, render, fmt::format("render lit from the {}", side)), mean_text(render),
@@ -125,8 +126,8 @@ std::vector<std::string> parameter_warnings(const FitSettings& settings, const F
     const FittedParameter& p = result.parameters[k];
     const FitParameter& parameter = settings.parameters[k];
     if (!p.determined)
-      out.push_back(fmt::format("{}: these photographs do not determine it; {} is where the fit came to rest", parameter.name(),
-                                figure(p.value)));
+      out.push_back(fmt::format("{}: these photographs do not determine it; {} is where the fit came to rest",
+                                parameter.name(), figure(p.value)));
     else if (p.at_bound)
       out.push_back(fmt::format("{}: {} is its bound; wider bounds may fit better (--parameters {}={:g}..{:g})",
                                 parameter.name(), figure(p.value), parameter.group->name, parameter.group->low,
@@ -153,11 +154,14 @@ Image side_by_side(const PicturePair& photographs, const PicturePair& renders) {
 
 std::string report_html(const FitReport& report, const FitSettings& settings, const FitJournal& journal,
                         const FitResult& result) {
-  std::string out = "<!doctype html>\n<html lang=en><meta charset=utf-8><title>A fitted material: " +
-                    html_text(report.scene) + "</title>\n<style>" + kStyle + "</style>\n";
-  out += fmt::format("<h1>A material fitted to photographs</h1>\n<p>{}, {} pairs of renders of {} samples a pixel, {}, {}.<br><code>{}</code></p>\n",
-                     html_text(report.scene), journal.steps.size(), settings.samples, duration_text(journal.seconds),
-                     html_text(report.device), html_text(report.command));
+  std::string out =
+      "<!doctype html>\n<html lang=en><meta charset=utf-8><title>A fitted material: " + html_text(report.scene) +
+      "</title>\n<style>" + kStyle + "</style>\n";
+  out += fmt::format(
+      "<h1>A material fitted to photographs</h1>\n<p>{}, {} pairs of renders of {} samples a pixel, {}, "
+      "{}.<br><code>{}</code></p>\n",
+      html_text(report.scene), journal.steps.size(), settings.samples, duration_text(journal.seconds),
+      html_text(report.device), html_text(report.command));
   if (!report.warnings.empty()) {
     out += "<ul>\n";
     for (const std::string& warning : report.warnings) out += "<li>" + html_text(warning) + "\n";
@@ -166,20 +170,21 @@ std::string report_html(const FitReport& report, const FitSettings& settings, co
   out += side_row(report, "front", report.photographs.front, result.pictures.front);
   out += side_row(report, "back", report.photographs.back, result.pictures.back);
   out +=
-      "<h2>Parameters</h2>\n<table><tr><th>parameter<th>value<th>two standard deviations<th>start<th>bounds<th>unit<th></tr>\n";
-  for (size_t k = 0; k < result.parameters.size(); ++k)
-    out += table_row(settings.parameters[k], result.parameters[k]);
+      "<h2>Parameters</h2>\n<table><tr><th>parameter<th>value<th>two standard "
+      "deviations<th>start<th>bounds<th>unit<th></tr>\n";
+  for (size_t k = 0; k < result.parameters.size(); ++k) out += table_row(settings.parameters[k], result.parameters[k]);
   out += fmt::format(
-      "</table>\n<p>Ranges come from how the residuals change with each parameter, all others free, when what is left of "
-      "the loss is taken for noise.</p>\n<h2>Loss</h2>\n<p>{}.</p>\n<p>At the end {}; the noise of the renders alone makes "
+      "</table>\n<p>Ranges come from how the residuals change with each parameter, all others free, when what is left "
+      "of "
+      "the loss is taken for noise.</p>\n<h2>Loss</h2>\n<p>{}.</p>\n<p>At the end {}; the noise of the renders alone "
+      "makes "
       "{}.</p>\n{}",
       html_text(report.loss), figure(result.best.loss), figure(result.render_noise), loss_curve_svg(journal));
   out += "<table><tr><th>start<th>loss there<th>loss at the end<th>pairs of renders<th></tr>\n";
   for (size_t i = 0; i < journal.finished.size(); ++i) {
     const FitStart& s = journal.finished[i];
-    out += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-                       start_name(settings, i), figure(s.first_loss),
-                       figure(s.loss), s.evaluations, s.converged ? "" : "had not converged");
+    out += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", start_name(settings, i),
+                       figure(s.first_loss), figure(s.loss), s.evaluations, s.converged ? "" : "had not converged");
   }
   return out + "</table>\n</html>\n";
 }

@@ -9,10 +9,10 @@ namespace wale::fit {
 /// What the page of a fit says beside its result.
 struct FitReport {
   std::string scene, command, device;
-  std::string loss;                    ///< its terms, in words
-  std::vector<std::string> warnings;   ///< of photographs, weights and parameters
-  PicturePair photographs;             ///< as they were compared; the size of the renders
-  double exposure = 0;                 ///< stops, of what the page shows
+  std::string loss;                   ///< its terms, in words
+  std::vector<std::string> warnings;  ///< of photographs, weights and parameters
+  PicturePair photographs;            ///< as they were compared; the size of the renders
+  double exposure = 0;                ///< stops, of what the page shows
   std::string view = "srgb";
 };
 

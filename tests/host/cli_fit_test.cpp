@@ -29,13 +29,13 @@ class CliFit : public Cli {
     }
   }
   std::vector<std::string> fit(const std::vector<std::string>& more) const {
-    std::vector<std::string> args = {"fit", scene_, "--front", at("front.exr"), "--back", at("back.exr"), "-o",
-                                     at("material.json")};
+    std::vector<std::string> args = {"fit",    scene_,         "--front", at("front.exr"),
+                                     "--back", at("back.exr"), "-o",      at("material.json")};
     args.insert(args.end(), more.begin(), more.end());
     return args;
   }
-  const std::vector<std::string> quick_ = {"--resolution", "1",       "--parameters", "transmit,reflect", "--starts", "1",
-                                           "--spp",        "8",       "--final-spp",  "16"};
+  const std::vector<std::string> quick_ = {
+      "--resolution", "1", "--parameters", "transmit,reflect", "--starts", "1", "--spp", "8", "--final-spp", "16"};
   std::vector<std::string> quick(const std::vector<std::string>& more) const {
     std::vector<std::string> args = fit(quick_);
     args.insert(args.end(), more.begin(), more.end());
@@ -91,8 +91,8 @@ TEST_F(CliFit, GoesOnFromWhereItWas) {
 
 TEST_F(CliFit, OnePhotographIsFittedWithAWarning) {
   photograph();
-  const Outcome run = run_wale({"fit", scene_, "--front", at("front.exr"), "-o", at("material.json"), "--resolution", "1",
-                                "--parameters", "reflect", "--starts", "1", "--spp", "8", "--final-spp", "8"});
+  const Outcome run = run_wale({"fit", scene_, "--front", at("front.exr"), "-o", at("material.json"), "--resolution",
+                                "1", "--parameters", "reflect", "--starts", "1", "--spp", "8", "--final-spp", "8"});
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_TRUE(contains(run.err, "only the photograph lit from the front is given")) << run.err;
 }
@@ -112,8 +112,9 @@ TEST_F(CliFit, RefusesInOneLine) {
   EXPECT_TRUE(contains(line({"--weights", at("old.png")}), "old.png"));
   EXPECT_TRUE(contains(line({"--set", "lights.1.name=lamp"}), "none is the back light"));
   EXPECT_TRUE(contains(line({"--set", "materials.yarn.heather={\"yarn\":0.1}"}), "a fit has one colour"));
-  EXPECT_TRUE(contains(refused({"fit", scene_, "--front", at("front.exr"), "--back", at("front.exr"), "-o", at("m.json")}),
-                       "front.exr"));
+  EXPECT_TRUE(
+      contains(refused({"fit", scene_, "--front", at("front.exr"), "--back", at("front.exr"), "-o", at("m.json")}),
+               "front.exr"));
   EXPECT_TRUE(contains(refused({"fit", scene_, "-o", at("m.json")}), "--front"));
   folder_.write("empty.json", "{\"wale\": 1}");
   EXPECT_TRUE(contains(refused({"fit", at("empty.json"), "--front", at("front.exr"), "-o", at("m.json")}),
@@ -122,7 +123,8 @@ TEST_F(CliFit, RefusesInOneLine) {
 
 TEST_F(CliFit, MeasuresBecomeOptions) {
   const Outcome run =
-      run_wale({"measure", scene_, "--scale", "20", "--wale", "50", "--yarn", "20", "--angle", "25", "--plies", "2"}, {kNoDevice});
+      run_wale({"measure", scene_, "--scale", "20", "--wale", "50", "--yarn", "20", "--angle", "25", "--plies", "2"},
+               {kNoDevice});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_TRUE(contains(run.out, "--set 'fabrics.0.gauge={\"wales\":40}'")) << run.out;
   EXPECT_TRUE(contains(run.out, "--set fabrics.0.yarn.plies=2"));
@@ -131,10 +133,11 @@ TEST_F(CliFit, MeasuresBecomeOptions) {
   const size_t at_thickness = run.out.find("yarn.thickness=");
   ASSERT_NE(at_thickness, std::string::npos);
   const std::string thickness = run.out.substr(at_thickness, run.out.find('\n', at_thickness) - at_thickness);
-  const Outcome built = run_wale({"build", scene_, "--quiet", "--set", "fabrics.0." + thickness, "--set",
-                                  "fabrics.0.yarn.plies=2"}, {kNoDevice});
+  const Outcome built = run_wale(
+      {"build", scene_, "--quiet", "--set", "fabrics.0." + thickness, "--set", "fabrics.0.yarn.plies=2"}, {kNoDevice});
   EXPECT_TRUE(contains(built.out, "yarn radius 0.5000 mm") || contains(built.out, "yarn radius 0.4999 mm") ||
-              contains(built.out, "yarn radius 0.5001 mm")) << built.out;
+              contains(built.out, "yarn radius 0.5001 mm"))
+      << built.out;
   const auto line = [&](const std::vector<std::string>& more) {
     std::vector<std::string> args = {"measure", scene_};
     args.insert(args.end(), more.begin(), more.end());

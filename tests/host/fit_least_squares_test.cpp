@@ -85,8 +85,8 @@ TEST(FitLeastSquares, StopsWhenItIsTold) {
 
 TEST(FitLeastSquares, BobyqaFindsItFromValuesAlone) {
   const std::vector<double> start{0.1, 0.9};
-  const BobyqaResult r =
-      bobyqa([](std::span<const double> x) { return valley(x, false).loss(); }, start, 1000, 1e-7, [] { return false; });
+  const BobyqaResult r = bobyqa([](std::span<const double> x) { return valley(x, false).loss(); }, start, 1000, 1e-7,
+                                [] { return false; });
   EXPECT_TRUE(r.converged);
   EXPECT_NEAR(r.x[0], 0.75, 1e-3);
   EXPECT_NEAR(r.x[1], 0.5625, 2e-3);

@@ -106,15 +106,19 @@ TEST(Gradients, AreThoseOfTheExpectedPicture) {
     for (const double sign : {-1.0, 1.0}) {
       Scene moved = scene;
       step.apply(moved.materials.front().yarn, sign * step.size);
-      for (const Image& image : pictures(moved, false, 4 * kSamples)) (sign < 0 ? lower : upper).push_back(mean_of(image, ""));
+      for (const Image& image : pictures(moved, false, 4 * kSamples))
+        (sign < 0 ? lower : upper).push_back(mean_of(image, ""));
     }
     const Means by = means_of(along), low = means_of(lower), high = means_of(upper);
     for (size_t c = 0; c < 3; ++c) {
       const double difference = (high.mean[c] - low.mean[c]) / (2 * step.size);
-      const double noise = std::sqrt((low.variance[c] + high.variance[c]) / (4 * step.size * step.size) + by.variance[c]);
+      const double noise =
+          std::sqrt((low.variance[c] + high.variance[c]) / (4 * step.size * step.size) + by.variance[c]);
       // What a difference over this step cannot resolve of the slope: a hundredth of it.
-      EXPECT_NEAR(by.mean[c], difference, 4 * noise + 0.01 * std::abs(difference)) << step.channel << c << " noise " << noise;
-      RecordProperty(step.channel + std::to_string(c), std::to_string(by.mean[c]) + " " + std::to_string(difference) + " +- " + std::to_string(noise));
+      EXPECT_NEAR(by.mean[c], difference, 4 * noise + 0.01 * std::abs(difference))
+          << step.channel << c << " noise " << noise;
+      RecordProperty(step.channel + std::to_string(c),
+                     std::to_string(by.mean[c]) + " " + std::to_string(difference) + " +- " + std::to_string(noise));
     }
   }
 }

@@ -120,10 +120,9 @@ TEST_P(PlyGradient, IsThatOfTheOracle) {
           *low[c] -= 0.1f, *high[c] += 0.1f;
           return (f(a1, c) - f(a0, c)) / (double(*high[c]) - double(*low[c]));
         };
-        const double exact[W_GRADIENT_COUNT] = {
-            color(&WPlyMaterial::forward), color(&WPlyMaterial::back),
-            difference(&WPlyMaterial::beta_r, m.beta_r * 0.999f, m.beta_r * 1.001f),
-            difference(&WPlyMaterial::tilt, m.tilt, m.tilt + 0.002f)};
+        const double exact[W_GRADIENT_COUNT] = {color(&WPlyMaterial::forward), color(&WPlyMaterial::back),
+                                                difference(&WPlyMaterial::beta_r, m.beta_r * 0.999f, m.beta_r * 1.001f),
+                                                difference(&WPlyMaterial::tilt, m.tilt, m.tilt + 0.002f)};
         const double value = f(m, c);
         for (int k = 0; k < W_GRADIENT_COUNT; ++k) {
           const double got = out[15 * i + 3 * (size_t(k) + 1) + size_t(c)];
