@@ -175,8 +175,10 @@ std::string report_html(const FitReport& report, const FitSettings& settings, co
   for (size_t k = 0; k < result.parameters.size(); ++k) out += table_row(settings.parameters[k], result.parameters[k]);
   out += fmt::format(
       "</table>\n<p>Ranges come from how the residuals change with each parameter, all others free, when what is left "
-      "of "
-      "the loss is taken for noise.</p>\n<h2>Loss</h2>\n<p>{}.</p>\n<p>At the end {}; the noise of the renders alone "
+      "of the loss is taken for noise that each residual has by itself. Residuals have some of it in common, so these "
+      "are the "
+      "least that ranges can be: several times as wide is likely.</p>\n<h2>Loss</h2>\n<p>{}.</p>\n<p>At the end {}; "
+      "the noise of the renders alone "
       "makes "
       "{}.</p>\n{}",
       html_text(report.loss), figure(result.best.loss), figure(result.render_noise), loss_curve_svg(journal));
