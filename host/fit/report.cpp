@@ -177,7 +177,7 @@ std::string report_html(const FitReport& report, const FitSettings& settings, co
       "</table>\n<p>Ranges come from how the residuals change with each parameter, all others free, when what is left "
       "of the loss is taken for noise that each residual has by itself. Residuals have some of it in common, so these "
       "are the "
-      "least that ranges can be: several times as wide is likely.</p>\n<h2>Loss</h2>\n<p>{}.</p>\n<p>At the end {}; "
+      "least that ranges can be: ten times as wide is possible.</p>\n<h2>Loss</h2>\n<p>{}.</p>\n<p>At the end {}; "
       "the noise of the renders alone "
       "makes "
       "{}.</p>\n{}",
