@@ -24,7 +24,10 @@ const std::string& process_space() {
     ::gethostname(host, sizeof(host) - 1);
     std::error_code failed;
     const fs::path space = fs::read_symlink("/proc/self/ns/pid", failed);
-    return fmt::format("{:08x}", hash_bytes(std::string(host) + "/" + space.string()) >> 32);
+    // Hosts may share a name, and the number of a process space; what a boot is called is each one's own.
+    std::string boot;
+    std::ifstream("/proc/sys/kernel/random/boot_id") >> boot;
+    return fmt::format("{:08x}", hash_bytes(std::string(host) + "/" + boot + "/" + space.string()) >> 32);
   }();
   return name;
 }
