@@ -119,7 +119,9 @@ void add_fit_options(CLI::App& command, wale::FitArgs& args) {
   command.add_option("--resolution", args.resolution, "size of the renders, of the photographs'; 0.1 unless given")
       ->check(finite_number(false));
   command.add_option("--spp", args.samples, "samples per pixel; 32 unless given")->check(CLI::Range(1, 1 << 16));
-  command.add_option("--final-spp", args.final_samples, "of a last descent from the best place; 256 unless given")
+  command
+      .add_option("--final-spp", args.final_samples,
+                  "of polishing the best place, all rounds together; 1024 unless given")
       ->check(CLI::Range(1, 1 << 16));
   command.add_option("--starts", args.starts, "places to descend from; 3 unless given")->check(CLI::Range(1, 64));
   command.add_option("--evaluations", args.evaluations, "pairs of renders for one start, at most; 150 unless given")

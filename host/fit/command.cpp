@@ -102,7 +102,7 @@ std::string progress_note(const FitJournal& journal, size_t starts) {
   const int start = journal.steps.empty() ? -1 : journal.steps.back().start;
   const std::string where = start < 0             ? "looking for starts"
                             : start < int(starts) ? fmt::format("start {} of {}", start + 1, starts)
-                                                  : "from the best";
+                                                  : "polishing the best";
   return fmt::format("{}, {} pairs{}", where, journal.steps.size(),
                      std::isfinite(best) ? fmt::format(", loss {:.4g}", best) : "");
 }
@@ -145,6 +145,7 @@ int run_fit(const FitArgs& args, const Loaders& loaders) {
                     "reflection is not in it",
                     sides[0] ? "front" : "back"));
   const NamedLoss loss(args, photographs, warnings);
+  settings.cells = loss.cells();
   if (!args.quiet)
     for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
 
@@ -207,11 +208,11 @@ int run_fit(const FitArgs& args, const Loaders& loaders) {
   }
   if (!result->best.converged && !result->out_of_time) {
     write_journal(journal, identity, journal_path);
-    user_error(
-        "{}: the fit had not converged after {} pairs of renders, loss {:.4g}; nothing was written; --evaluations {} "
-        "goes on "
-        "from there",
-        args.output.string(), result->best.evaluations, result->best.loss, 2 * settings.evaluations);
+    user_error("{}: the fit had not converged after {} pairs of renders, loss {:.4g}; nothing was written; {}",
+               args.output.string(), journal.steps.size(), result->best.loss,
+               result->polished
+                   ? fmt::format("--evaluations {} goes on from there", 2 * settings.evaluations)
+                   : fmt::format("polishing went on moving: --final-spp {} may settle it", 4 * settings.final_samples));
   }
   if (!result->best.converged && !args.quiet)
     fmt::print(stderr, "warning: --minutes {:g} were over before the fit had converged\n", args.minutes);

@@ -10,7 +10,7 @@ struct FitArgs : SceneArgs {
   std::string material;                       ///< empty: the scene's only ply material
   std::string parameters;                     ///< as fit_parameters() reads them
   double resolution = 0.1;                    ///< of the photographs' size
-  int samples = 32, final_samples = 256, starts = 3, evaluations = 150;
+  int samples = 32, final_samples = 1024, starts = 3, evaluations = 150;
   std::string method = "paths";
   double minutes = 0;  ///< 0: as long as it takes
   bool redo = false;   ///< forget what an earlier run left

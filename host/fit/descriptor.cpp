@@ -34,7 +34,9 @@ Blocks finished(std::vector<Block> blocks, const Picture& picture) {
   return blocks;
 }
 
-Block block(std::string name, std::vector<float> values) { return {std::move(name), 0, 0, std::move(values)}; }
+Block block(std::string name, std::vector<float> values, int passes = 1) {
+  return {std::move(name), 0, 0, std::move(values), passes};
+}
 
 void append(std::vector<float>& values, const double* from, size_t count) {
   for (size_t i = 0; i < count; ++i) values.push_back(float(from[i]));
@@ -137,7 +139,8 @@ Descriptor gradient_descriptor(const DescriptorOptions& options) {
           append_edges(level, window, 0, 1, values);
         }
       }
-      blocks.push_back(block(level_name(blocks.size()), std::move(values)));
+      const int directions = options.alignment == Alignment::aligned ? 2 : 1;
+      blocks.push_back(block(level_name(blocks.size()), std::move(values), directions));
     }
     blocks = finished(std::move(blocks), picture);
     // One unit for all levels: a level that has hardly any edges of its own must not count by what aliases into it.

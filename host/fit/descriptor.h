@@ -16,6 +16,7 @@ struct Block {
   /// than kLeastUnit of its brightness, so that nothing divides by a shade that the picture hardly has.
   double unit;
   std::vector<float> values;
+  int passes = 1;  ///< how often the values run over the picture, from its top down
 };
 using Blocks = std::vector<Block>;
 constexpr double kLeastUnit = 0.02;

@@ -47,14 +47,15 @@ Descriptor feature_descriptor(std::shared_ptr<const FeatureNetwork> network, std
     Blocks blocks;
     for (size_t i = 0; i < maps.size(); ++i) {
       std::vector<float> values;
+      int passes = 1;
       if (options.alignment == Alignment::aligned)
-        values = std::move(maps[i].values);
+        values = std::move(maps[i].values), passes = maps[i].channels;
       else
         for (const Window& window : windows(maps[i].width, maps[i].height, options.windows))
           append_gram(maps[i], window, values);
       // Display values have a brightness about 1 whatever the picture's.
       const double unit = unit_of(values, 0.0);
-      blocks.push_back({layers[i].layer, layers[i].weight / sum, unit > 0 ? unit : 1.0, std::move(values)});
+      blocks.push_back({layers[i].layer, layers[i].weight / sum, unit > 0 ? unit : 1.0, std::move(values), passes});
     }
     return blocks;
   };

@@ -18,7 +18,10 @@ constexpr double kMargin = 0.02;        // starts keep off the bounds, where der
 constexpr double kUndetermined = 0.25;  // standard deviation, of the bounds' range
 constexpr double kAlike = 0.95;
 constexpr double kLeastStep = 2e-3;
-constexpr double kDescentShare = 0.8;
+constexpr double kDescentShare = 0.6;  // of the time
+constexpr int kLastShare = 4;
+constexpr double kPolishShare = 0.9;
+constexpr uint32_t kRoundSeeds = 1u << 16;  // far from those of descents
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -81,17 +84,14 @@ void Fit::add(PicturePair& mean, const PicturePair& half, std::vector<double>& r
   }
 }
 
-int Fit::samples_of(int start) const {
-  if (start < 0) return std::max(4, settings_.samples / 4);
-  return start < settings_.starts ? settings_.samples : settings_.final_samples;
+bool Fit::out_of_time(double share) const {
+  return settings_.seconds > 0 && now() - begun_ > share * settings_.seconds;
 }
 
-// Judging takes pairs of renders too: time for them is left.
-bool Fit::out_of_time() const { return settings_.seconds > 0 && now() - begun_ > kDescentShare * settings_.seconds; }
-
 void Fit::keep(FitJournal& journal, int start, std::span<const double> places, double loss) {
-  // Losses of different samples are not compared.
-  if (start != best_start_ && samples_of(start) != samples_of(best_start_)) best_loss_ = INFINITY;
+  // Losses of looking, of descents and of polishing have different samples.
+  const int looking = -1, polishing = settings_.starts;
+  if (start != best_start_ && (best_start_ == looking || start == polishing)) best_loss_ = INFINITY;
   best_start_ = start;
   const bool better = loss < best_loss_;
   if (better) best_loss_ = loss;
@@ -105,9 +105,10 @@ std::vector<std::vector<double>> Fit::look_for_starts(FitJournal& journal) {
   if (settings_.starts == 1) return {own};
   // The scene's own place is one of them; the others are the best of a few that are spread over the box.
   std::vector<std::pair<double, std::vector<double>>> seen;
-  for (int i = 1; i < settings_.starts * kLooks && !stop_() && !out_of_time(); ++i) {
+  const int looks = std::max(4, settings_.samples / 4);
+  for (int i = 1; i < settings_.starts * kLooks && !stop_() && !out_of_time(kDescentShare); ++i) {
     std::vector<double> x = spread_place(own.size(), i);
-    const double loss = evaluate(x, samples_of(-1), false).loss();
+    const double loss = evaluate(x, looks, false).loss();
     keep(journal, -1, x, loss);
     seen.emplace_back(loss, std::move(x));
   }
@@ -120,7 +121,7 @@ std::vector<std::vector<double>> Fit::look_for_starts(FitJournal& journal) {
 FitStart Fit::descend(FitJournal& journal, int number, const std::vector<double>& from) {
   FitStart out;
   out.from = from;
-  const int samples = samples_of(number);
+  const int samples = settings_.samples;
   // What an earlier run reached.
   std::vector<double> begin = from;
   double least = INFINITY;
@@ -134,7 +135,7 @@ FitStart Fit::descend(FitJournal& journal, int number, const std::vector<double>
     if (out.evaluations++ == 0) out.first_loss = loss;
     keep(journal, number, x, loss);
   };
-  const std::function<bool()> ended = [this] { return stop_() || out_of_time(); };
+  const std::function<bool()> ended = [this] { return stop_() || out_of_time(kDescentShare); };
   if (settings_.method == FitMethod::bobyqa) {
     const BobyqaResult r = bobyqa(
         [&](std::span<const double> x) {
@@ -158,58 +159,76 @@ FitStart Fit::descend(FitJournal& journal, int number, const std::vector<double>
 }
 
 const FitStart& Fit::best_of(const FitJournal& journal) const {
-  const auto end = journal.finished.begin() + std::min<std::ptrdiff_t>(settings_.starts, std::ssize(journal.finished));
-  return *std::min_element(journal.finished.begin(), end,
+  return *std::min_element(journal.finished.begin(), journal.finished.end(),
                            [](const FitStart& a, const FitStart& b) { return a.loss < b.loss; });
 }
 
-FitResult Fit::judge(const FitJournal& journal) {
-  FitResult out;
-  // Losses of different samples are not compared.
-  const bool polished = journal.finished.size() > size_t(settings_.starts);
-  out.best = polished ? journal.finished.back() : best_of(journal);
-  const std::vector<double>& best = out.best.to;
-  const size_t axes = best.size();
+Replicate Fit::round(std::span<const double> places, int samples, uint32_t number) {
+  const auto scene_at = [&](std::span<const double> at) {
+    Scene scene = scene_;
+    apply_parameters(scene, settings_.target, settings_.parameters, at);
+    return scene;
+  };
+  const uint32_t seed = kRoundSeeds * settings_.seed + number;
+  Replicate out;
+  out.derivatives.resize(places.size());
+  if (settings_.method == FitMethod::paths) {
+    const LitPair::WithGradients rendered = renderer_.render_with_gradients(scene_at(places), samples, seed);
+    pictures_ = rendered.pictures;
+    for (size_t k = 0; k < places.size(); ++k)
+      out.derivatives[k] = residual_derivative(residuals_, rendered, settings_.parameters[k], places[k]);
+  } else {
+    pictures_ = renderer_.render(scene_at(places), samples, seed);
+  }
+  out.values = residuals_(pictures_);
+  // Central differences where paths do not tell, wide enough to stand above the noise. They weigh residuals, and
+  // need not be as sure as those.
+  constexpr double kWide = 0.05;
+  const int fewer = std::max(1, samples / 2);
+  for (size_t k = 0; k < places.size(); ++k) {
+    if (!out.derivatives[k].empty()) continue;
+    std::vector<double> lower(places.begin(), places.end()), upper = lower;
+    lower[k] = std::max(0.0, places[k] - kWide);
+    upper[k] = std::min(1.0, places[k] + kWide);
+    const std::vector<double> a = residuals_(renderer_.render(scene_at(lower), fewer, seed));
+    const std::vector<double> b = residuals_(renderer_.render(scene_at(upper), fewer, seed));
+    for (size_t i = 0; i < a.size(); ++i) out.derivatives[k].push_back((b[i] - a[i]) / (upper[k] - lower[k]));
+  }
+  return out;
+}
 
-  const int samples = samples_of(int(journal.finished.size()) - 1);
-  Residuals at = evaluate(best, samples, true);
+FitResult Fit::judge(const FitStart& best, const Polished& polished) {
+  FitResult out;
+  out.best = best;
+  out.best.to = polished.x;
+  out.polished = polished.converged;
+  out.best.converged = best.converged && polished.converged;
+  // Beside descents and rounds, to see what they reached.
+  const Residuals at = evaluate(polished.x, std::max(2, settings_.final_samples / kLastShare), false);
+  out.best.loss = at.loss();
   out.pictures = pictures_;
   // What a render of half the samples has of noise alone is half of the squared difference of two; the mean of both has
   // half of that.
   const std::vector<double>&first = at.replicates[0].values, &second = at.replicates[1].values;
   for (size_t i = 0; i < first.size(); ++i) out.render_noise += 0.25 * (first[i] - second[i]) * (first[i] - second[i]);
 
-  // Central differences, wide enough to stand above the noise, where paths do not tell.
-  constexpr double kWide = 0.05;
-  for (Replicate& r : at.replicates) r.derivatives.resize(axes);
-  for (size_t k = 0; k < axes; ++k) {
-    if (!at.replicates[0].derivatives[k].empty()) continue;
-    std::vector<double> lower = best, upper = best;
-    lower[k] = std::max(0.0, best[k] - kWide);
-    upper[k] = std::min(1.0, best[k] + kWide);
-    const Residuals a = evaluate(lower, samples, false), b = evaluate(upper, samples, false);
-    for (size_t r = 0; r < at.replicates.size(); ++r)
-      for (size_t i = 0; i < first.size(); ++i)
-        at.replicates[r].derivatives[k].push_back((b.replicates[r].values[i] - a.replicates[r].values[i]) /
-                                                  (upper[k] - lower[k]));
-  }
-  const ParameterErrors errors = parameter_errors(at);
-  out.alike = errors.alike(kAlike);
-  for (size_t k = 0; k < axes; ++k) {
+  out.alike = polished.errors.alike(kAlike);
+  for (size_t k = 0; k < polished.x.size(); ++k) {
     const FitParameter& p = settings_.parameters[k];
+    const double place = polished.x[k];
     FittedParameter fitted;
-    fitted.value = p.value(best[k]);
-    fitted.start = p.value(out.best.from[k]);
-    fitted.at_bound = best[k] <= 1e-3 || best[k] >= 1 - 1e-3;
-    if (const auto deviation = errors.deviations[k]) {
-      fitted.low = p.value(best[k] - 2 * *deviation);
-      fitted.high = p.value(best[k] + 2 * *deviation);
+    fitted.value = p.value(place);
+    fitted.start = p.value(best.from[k]);
+    fitted.at_bound = place <= 1e-3 || place >= 1 - 1e-3;
+    if (const auto deviation = polished.errors.deviations[k]) {
+      fitted.low = p.value(std::max(0.0, place - 2 * *deviation));
+      fitted.high = p.value(std::min(1.0, place + 2 * *deviation));
       fitted.determined = *deviation < kUndetermined;
     }
     out.parameters.push_back(fitted);
   }
   out.scene = scene_;
-  apply_parameters(out.scene, settings_.target, settings_.parameters, best);
+  apply_parameters(out.scene, settings_.target, settings_.parameters, polished.x);
   return out;
 }
 
@@ -227,9 +246,7 @@ std::optional<FitResult> Fit::run(FitJournal& journal, const std::function<bool(
     if (stopped()) return std::nullopt;
     journal.chosen = std::move(chosen);
   }
-  for (size_t i = 0; i <= size_t(settings_.starts) && (i == 0 || !out_of_time()); ++i) {
-    // The last descent makes the best of the others surer.
-    if (i == size_t(settings_.starts) && journal.chosen.size() == i) journal.chosen.push_back(best_of(journal).to);
+  for (size_t i = 0; i < journal.chosen.size() && (i == 0 || !out_of_time(kDescentShare)); ++i) {
     const bool done = i < journal.finished.size();
     // An earlier run may have had fewer evaluations.
     if (done && (journal.finished[i].converged || journal.finished[i].evaluations >= settings_.evaluations)) continue;
@@ -240,8 +257,15 @@ std::optional<FitResult> Fit::run(FitJournal& journal, const std::function<bool(
     else
       journal.finished.push_back(std::move(start));
   }
-  FitResult result = judge(journal);
-  result.out_of_time = out_of_time();
+  const bool cut_short = out_of_time(kDescentShare);
+  const FitStart& best = best_of(journal);
+  const Polished polished =
+      polish([this](std::span<const double> x, int samples, uint32_t number) { return round(x, samples, number); },
+             best.to, settings_.final_samples, settings_.cells, [this] { return stop_() || out_of_time(kPolishShare); },
+             [&](std::span<const double> x, double loss) { keep(journal, settings_.starts, x, loss); });
+  if (stopped()) return std::nullopt;
+  FitResult result = judge(best, polished);
+  result.out_of_time = cut_short;
   journal.seconds = now() - begun_;
   return result;
 }

@@ -8,6 +8,7 @@
 #include "host/fit/least_squares.h"
 #include "host/fit/lit_pair.h"
 #include "host/fit/parameter.h"
+#include "host/fit/polish.h"
 #include "host/fit/residual_derivative.h"
 
 namespace wale::fit {
@@ -23,12 +24,13 @@ struct FitSettings {
   std::vector<FitParameter> parameters;
   FitTarget target;
   FitMethod method = FitMethod::paths;
-  int starts = 3;           ///< places that are descended from
-  int samples = 32;         ///< paths a pixel, half of them for each of two independent renders
-  int final_samples = 256;  ///< the same once more, from the best place that descents end at
-  int evaluations = 150;    ///< pairs of pictures for one start, at most
-  double seconds = 0;       ///< > 0: descents end then, converged or not
+  int starts = 3;            ///< places that are descended from
+  int samples = 32;          ///< paths a pixel, half of them for each of two independent renders
+  int final_samples = 1024;  ///< of all rounds that the best end of a descent is polished by
+  int evaluations = 150;     ///< pairs of pictures for one start, at most
+  double seconds = 0;        ///< > 0: descents end then, converged or not
   uint32_t seed = 1;
+  std::vector<int> cells;  ///< of each residual: see Rounds
 };
 
 /// One descent.
@@ -41,8 +43,7 @@ struct FitStart {
 
 /// One pair of pictures that was rendered on the way.
 struct FitStep {
-  int start =
-      -1;  ///< which descent; -1: looking for starts; after the last start: from the best of them, with more samples
+  int start = -1;  ///< which descent; -1: looking for starts; after the last start: polishing the best of them
   double seconds = 0;
   double loss = 0;
   std::vector<double> places;
@@ -58,7 +59,7 @@ struct FitJournal {
 
 struct FittedParameter {
   double value = 0, start = 0;      ///< in the group's unit
-  std::optional<double> low, high;  ///< two standard deviations to either side, within the bounds
+  std::optional<double> low, high;  ///< two standard deviations to either side, within the bounds (Rounds::solve)
   bool determined = false;          ///< that range is less than half of the bounds'
   bool at_bound = false;
 };
@@ -67,6 +68,7 @@ struct FitResult {
   FitStart best;
   std::vector<FittedParameter> parameters;
   bool out_of_time = false;                      ///< some descent was cut short
+  bool polished = false;                         ///< polishing came to rest
   std::vector<std::pair<size_t, size_t>> alike;  ///< parameters whose errors go together (correlation above 0.95)
   double render_noise = 0;                       ///< loss that the noise of the renders alone makes
   PicturePair pictures;
@@ -95,10 +97,9 @@ class Fit {
   void add(PicturePair& mean, const PicturePair& half, std::vector<double>& residuals) const;
   std::vector<std::vector<double>> look_for_starts(FitJournal& journal);
   FitStart descend(FitJournal& journal, int number, const std::vector<double>& from);
-  FitResult judge(const FitJournal& journal);
+  Replicate round(std::span<const double> places, int samples, uint32_t number);
+  FitResult judge(const FitStart& best, const Polished& polished);
   const FitStart& best_of(const FitJournal& journal) const;
-  /// Paths a pixel of one descent; -1: of looking for starts.
-  int samples_of(int start) const;
   void keep(FitJournal& journal, int start, std::span<const double> places, double loss);
 
   const Scene& scene_;
@@ -109,7 +110,7 @@ class Fit {
   double best_loss_ = INFINITY;
   int best_start_ = -1;
   double begun_ = 0;
-  bool out_of_time() const;
+  bool out_of_time(double share) const;
   std::function<bool()> stop_;
   std::function<void(const FitProgress&)> progress_;
 };

@@ -16,12 +16,6 @@ constexpr int kRefused = 4;  // steps in a row that lead nowhere: what is left i
 
 Vector vector_of(const std::vector<double>& v) { return Eigen::Map<const Vector>(v.data(), Eigen::Index(v.size())); }
 
-Matrix columns_of(const Replicate& r) {
-  Matrix j(Eigen::Index(r.values.size()), Eigen::Index(r.derivatives.size()));
-  for (size_t k = 0; k < r.derivatives.size(); ++k) j.col(Eigen::Index(k)) = vector_of(r.derivatives[k]);
-  return j;
-}
-
 // J^T J and J^T r, of products of the two replicates where there are two.
 struct Normal {
   Matrix h;
@@ -205,54 +199,6 @@ double Residuals::loss() const {
 LeastSquaresResult least_squares(const ResidualFunction& f, std::span<const double> start,
                                  const LeastSquaresOptions& options, const LeastSquaresProgress& progress) {
   return Descent(f, start, options, progress).run();
-}
-
-std::vector<std::pair<size_t, size_t>> ParameterErrors::alike(double least) const {
-  std::vector<std::pair<size_t, size_t>> pairs;
-  for (size_t a = 0; a < correlation.size(); ++a)
-    for (size_t b = a + 1; b < correlation.size(); ++b)
-      if (std::abs(correlation[a][b]) > least) pairs.emplace_back(a, b);
-  return pairs;
-}
-
-ParameterErrors parameter_errors(const Residuals& residuals) {
-  constexpr double kNothing = 1e-12, kApart = 1e-6;  // of the largest eigenvalue; of an eigenvector
-  const size_t axes = residuals.replicates.front().derivatives.size();
-  ParameterErrors out;
-  out.deviations.resize(axes);
-  out.correlation.assign(axes, std::vector<double>(axes, 0.0));
-  const auto rows = Eigen::Index(residuals.replicates.front().values.size()), n = Eigen::Index(axes);
-  if (axes == 0 || rows == 0) return out;
-  std::vector<Matrix> j;
-  for (const Replicate& r : residuals.replicates) j.push_back(columns_of(r));
-  const Eigen::SelfAdjointEigenSolver<Matrix> information(normal_of(j, residuals).h);
-  const double largest = information.eigenvalues().maxCoeff();
-  if (!(largest > 0)) return out;
-  Matrix covariance = Matrix::Zero(n, n);
-  std::vector<bool> known(axes, true);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Vector v = information.eigenvectors().col(i);
-    if (information.eigenvalues()(i) > kNothing * largest) {
-      covariance += v * v.transpose() / information.eigenvalues()(i);
-      continue;
-    }
-    for (size_t k = 0; k < axes; ++k) known[k] = known[k] && std::abs(v(Eigen::Index(k))) < kApart;
-  }
-  // The fit rests on the mean of the replicates, noise and all.
-  const Vector mean =
-      0.5 * (vector_of(residuals.replicates.front().values) + vector_of(residuals.replicates.back().values));
-  covariance *= mean.squaredNorm() / double(std::max<Eigen::Index>(1, rows - n));
-  for (size_t a = 0; a < axes; ++a) {
-    if (!known[a]) continue;
-    const auto i = Eigen::Index(a);
-    out.deviations[a] = std::sqrt(covariance(i, i));
-    for (size_t b = 0; b < axes; ++b) {
-      const auto k = Eigen::Index(b);
-      const double norm = std::sqrt(covariance(i, i) * covariance(k, k));
-      if (known[b] && norm > 0) out.correlation[a][b] = covariance(i, k) / norm;
-    }
-  }
-  return out;
 }
 
 }  // namespace wale::fit

@@ -1,8 +1,6 @@
 #pragma once
 #include <functional>
-#include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace wale::fit {
@@ -51,19 +49,5 @@ using LeastSquaresProgress = std::function<void(std::span<const double> x, doubl
 /// Broyden's rank-one formula (1965).
 LeastSquaresResult least_squares(const ResidualFunction& f, std::span<const double> start,
                                  const LeastSquaresOptions& options = {}, const LeastSquaresProgress& progress = {});
-
-/// How well residuals determine each axis of the box.
-struct ParameterErrors {
-  /// Standard deviation of each axis when every residual has the variance that the loss makes likely; the inverse of
-  /// J^T J, the Fisher information, is the covariance. No value where a direction along the axis changes nothing.
-  std::vector<std::optional<double>> deviations;
-  std::vector<std::vector<double>> correlation;  ///< of axes that have one; else 0
-
-  /// Pairs of axes whose correlation is larger than that, of either sign.
-  std::vector<std::pair<size_t, size_t>> alike(double correlation) const;
-};
-
-/// From residuals with all their derivatives.
-ParameterErrors parameter_errors(const Residuals& residuals);
 
 }  // namespace wale::fit

@@ -138,6 +138,19 @@ std::vector<double> Loss::residuals(const PicturePair& pair) const {
   return all;
 }
 
+std::vector<int> Loss::cells() const {
+  std::vector<int> all;
+  for (const Term& term : terms_) {
+    const int first = term.picture == &PicturePair::back && terms_.front().picture == &PicturePair::front ? kStrips : 0;
+    for (const Block& block : term.target) {
+      const size_t count = block.values.size();
+      for (size_t i = 0; i < count; ++i)
+        all.push_back(first + int(i * size_t(block.passes) % count * size_t(kStrips) / count));
+    }
+  }
+  return all;
+}
+
 std::vector<Loss::Contribution> Loss::contributions(const PicturePair& pair) const {
   std::vector<Contribution> all;
   for_each_block(pair, [&](const Term& term, const Block& target, const Block& block, double factor) {

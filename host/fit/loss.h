@@ -44,6 +44,10 @@ class Loss {
   /// What is squared and summed up in loss(), always in the same order; the derivative by a parameter is what least
   /// squares need.
   std::vector<double> residuals(const PicturePair& pair) const;
+  /// Of each residual, which of kStrips strips of a block it is from, those of the back after those of the front: what
+  /// a strip of a photograph has of noise, another has not.
+  std::vector<int> cells() const;
+  static constexpr int kStrips = 16;
 
   /// One block's part of the loss.
   struct Contribution {

@@ -15,6 +15,7 @@ class NamedLoss {
   NamedLoss(const FitArgs& args, const PicturePair& photographs, std::vector<std::string>& warnings);
 
   std::vector<double> residuals(const PicturePair& pair) const { return loss_->residuals(whole(pair)); }
+  std::vector<int> cells() const { return loss_->cells(); }
   const std::string& words() const { return words_; }
 
  private:

@@ -89,10 +89,8 @@ std::string table_row(const FitParameter& parameter, const FittedParameter& p) {
                      remark(p));
 }
 
-std::string start_name(const FitSettings& settings, size_t i) {
-  if (i == 0) return "the scene's material";
-  return i < size_t(settings.starts) ? fmt::format("place {}", i + 1)
-                                     : fmt::format("the best, {} samples", settings.final_samples);
+std::string start_name(size_t i) {
+  return i == 0 ? std::string("the scene's material") : fmt::format("place {}", i + 1);
 }
 
 void put_side(Image& into, int row, const Picture& photograph, const Picture& render) {
@@ -185,7 +183,7 @@ std::string report_html(const FitReport& report, const FitSettings& settings, co
   out += "<table><tr><th>start<th>loss there<th>loss at the end<th>pairs of renders<th></tr>\n";
   for (size_t i = 0; i < journal.finished.size(); ++i) {
     const FitStart& s = journal.finished[i];
-    out += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", start_name(settings, i),
+    out += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", start_name(i),
                        figure(s.first_loss), figure(s.loss), s.evaluations, s.converged ? "" : "had not converged");
   }
   return out + "</table>\n</html>\n";

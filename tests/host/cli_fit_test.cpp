@@ -45,9 +45,9 @@ class CliFit : public Cli {
 
 TEST_F(CliFit, WritesAMaterialThatSceneTakes) {
   photograph();
-  // Pixels that tell colours: what 16 samples tell is chance.
+  // What 16 samples tell is chance.
   std::vector<std::string> args = quick({"--report", at("fit.html"), "--progress", at("now.png")});
-  *(std::find(args.begin(), args.end(), "--final-spp") + 1) = "96";
+  *(std::find(args.begin(), args.end(), "--final-spp") + 1) = "384";
   const Outcome run = run_wale(args);
   ASSERT_EQ(run.status, 0) << run.err;
   const auto material = nlohmann::json::parse(file_text(folder_ / "material.json"));

@@ -99,50 +99,6 @@ TEST(FitLeastSquares, BobyqaHandsErrorsOn) {
                std::runtime_error);
 }
 
-// Straight lines through noisy points: deviations and correlation against what many fits show.
-TEST(FitLeastSquares, DeviationsAreThoseOfManyFits) {
-  const int points = 40, fits = 2000;
-  std::vector<std::vector<double>> columns(2);
-  for (int i = 0; i < points; ++i) columns[0].push_back(1), columns[1].push_back(1 + double(i) / points);
-  std::mt19937 random(5);
-  std::normal_distribution<double> noise(0, 0.02);
-  double sum[2] = {0, 0}, squares[2] = {0, 0}, product = 0;
-  Residuals last;
-  for (int f = 0; f < fits; ++f) {
-    std::vector<double> y(points);
-    for (double& v : y) v = noise(random);
-    const auto line = [&](std::span<const double> x, bool) {
-      Residuals r{{{}}};
-      for (int i = 0; i < points; ++i)
-        r.replicates[0].values.push_back((x[0] - 0.5) + (x[1] - 0.5) * columns[1][size_t(i)] - y[size_t(i)]);
-      return r;
-    };
-    const std::vector<double> start{0.5, 0.5};
-    LeastSquaresOptions options;
-    options.least_gain = 1e-9;
-    options.least_step = 1e-9;
-    const LeastSquaresResult r = least_squares(line, start, options);
-    last = r.residuals;
-    for (int k = 0; k < 2; ++k) {
-      sum[k] += r.x[size_t(k)] / fits;
-      squares[k] += r.x[size_t(k)] * r.x[size_t(k)] / fits;
-    }
-    product += r.x[0] * r.x[1] / fits;
-  }
-  // The variance of the points as it is, not as one fit sees it.
-  last.replicates[0].values.assign(points, 0.02 * std::sqrt((points - 2.0) / points));
-  const ParameterErrors errors = parameter_errors(last);
-  const double deviation[2] = {std::sqrt(squares[0] - sum[0] * sum[0]), std::sqrt(squares[1] - sum[1] * sum[1])};
-  for (size_t k = 0; k < 2; ++k) {
-    ASSERT_TRUE(errors.deviations[k]);
-    EXPECT_NEAR(*errors.deviations[k], deviation[k], 0.05 * deviation[k]);
-  }
-  const double correlation = (product - sum[0] * sum[1]) / (deviation[0] * deviation[1]);
-  EXPECT_NEAR(errors.correlation[0][1], correlation, 0.01);
-  EXPECT_EQ(errors.alike(0.95).size(), 1u);
-  EXPECT_TRUE(errors.alike(0.99).empty() || std::abs(correlation) > 0.99);
-}
-
 // Noise that grows along the axis: squares are least where there is little of it, products of two replicates are not.
 TEST(FitLeastSquares, ProductsOfReplicatesAreNotDrawnToWhereNoiseIsLeast) {
   constexpr int kPoints = 4000;
@@ -168,16 +124,6 @@ TEST(FitLeastSquares, ProductsOfReplicatesAreNotDrawnToWhereNoiseIsLeast) {
   };
   EXPECT_NEAR(fitted(1), 0.3, 0.03);  // the least of (x - 0.6)^2 + x^2
   EXPECT_NEAR(fitted(2), 0.6, 0.03);
-}
-
-// Two axes that do the same, and one that does nothing: none of them is known.
-TEST(FitLeastSquares, NamesWhatIsNotDetermined) {
-  const std::vector<std::vector<double>> columns{{1, 2, 3, 5}, {2, 4, 6, 10}, {0, 0, 0, 0}, {1, -1, 1, -1}};
-  const ParameterErrors errors = parameter_errors({{{{0.01, 0.01, 0.01, 0.01}, columns}}});
-  EXPECT_FALSE(errors.deviations[0]);
-  EXPECT_FALSE(errors.deviations[1]);
-  EXPECT_FALSE(errors.deviations[2]);
-  EXPECT_TRUE(errors.deviations[3]);
 }
 
 }  // namespace
