@@ -144,6 +144,10 @@ void add_fit_options(CLI::App& command, wale::FitArgs& args) {
   command.add_option("--front-exposure", args.front_exposure, "time x ISO / f-number^2 of the front photograph")
       ->check(finite_number(false));
   command.add_option("--back-exposure", args.back_exposure, "the same of the back one")->check(finite_number(false));
+  command
+      .add_option("--clip-level", args.clip_level,
+                  "stored value from which a pixel is clipped; 1 in files of whole numbers")
+      ->check(finite_number(false));
   command.add_flag("--unaligned", args.unaligned, "photographs show such cloth, not these very stitches");
   command.add_option("--weights", args.weights, "VGG16 weights (.npz or .onnx) for a loss by features");
   command.add_option("--layers", args.layers, "layers of it and their weights: relu1_2=1,relu2_2=0.5");

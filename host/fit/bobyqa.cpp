@@ -2,6 +2,7 @@
 
 #include <nlopt.h>
 
+#include <cmath>
 #include <exception>
 #include <memory>
 
@@ -20,7 +21,10 @@ struct Call {
 // C code cannot be unwound: what is thrown waits until NLopt has returned.
 double evaluate(unsigned n, const double* x, double*, void* data) {
   Call& call = *static_cast<Call*>(data);
-  if (call.stop()) nlopt_force_stop(call.optimiser);
+  if (call.stop()) {
+    nlopt_force_stop(call.optimiser);
+    return HUGE_VAL;
+  }
   try {
     return call.f(std::span(x, n));
   } catch (...) {

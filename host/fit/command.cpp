@@ -22,7 +22,25 @@ using namespace wale::fit;
 
 constexpr double kNoisy = 10;  // times the loss
 
+// What is read must not be written over, nor one output over another.
 void require_outputs(const FitArgs& args) {
+  using Named = std::pair<const char*, std::filesystem::path>;
+  const Named inputs[] = {
+      {"SCENE", args.scene}, {"--front", args.front}, {"--back", args.back}, {"--weights", args.weights}};
+  const Named outputs[] = {{"-o", args.output}, {"--report", args.report}, {"--progress", args.progress}};
+  const auto require_other = [](const Named& output, const Named& other) {
+    std::error_code ignored;
+    const auto path = std::filesystem::weakly_canonical(output.second, ignored);
+    if (path == std::filesystem::weakly_canonical(other.second, ignored))
+      user_error("{}: {} is that of {} too; give another", output.first, output.second.string(), other.first);
+  };
+  for (size_t i = 0; i < std::size(outputs); ++i) {
+    if (outputs[i].second.empty()) continue;
+    for (const Named& input : inputs)
+      if (!input.second.empty()) require_other(outputs[i], input);
+    for (size_t j = 0; j < i; ++j)
+      if (!outputs[j].second.empty()) require_other(outputs[i], outputs[j]);
+  }
   for (const auto& file : {args.output, args.report})
     if (!file.empty()) require_writable_path(file);
   if (!args.progress.empty()) require_writable(args.progress);
@@ -59,12 +77,12 @@ std::vector<std::string> doubts_of(const FitSettings& settings, const FitResult&
 void print_result(const FitSettings& settings, const FitJournal& journal, const FitResult& result) {
   for (size_t k = 0; k < result.parameters.size(); ++k)
     fmt::print("{}\n", parameter_line(settings.parameters[k], result.parameters[k]));
-  fmt::print("loss {:.4g}, of which noise of the renders {:.2g}; {} pairs of renders in {}\n", result.best.loss,
-             result.render_noise, journal.steps.size(), duration_text(journal.seconds));
+  fmt::print("loss {:.4g}; squares that noise of the renders adds, taken off: {:.2g}; {} pairs of renders in {}\n",
+             result.best.loss, result.render_noise, journal.steps.size(), duration_text(journal.seconds));
 }
 
 [[noreturn]] void not_converged(const FitArgs& args, const FitJournal& journal, const FitResult& result) {
-  user_error("{}: the fit had not converged after {} pairs of renders, loss {:.4g}; nothing was written; {}",
+  user_error("{}: the fit had not converged after {} pairs of renders, loss {:.4g}; no material was written; {}",
              args.output.string(), journal.steps.size(), result.best.loss,
              result.polished
                  ? fmt::format("--evaluations {} goes on from there", 2 * args.evaluations)
@@ -74,8 +92,8 @@ void print_result(const FitSettings& settings, const FitJournal& journal, const 
 }  // namespace
 
 int run_fit(const FitArgs& args, const Loaders& loaders) {
-  FitTask task = read_task(args);
   require_outputs(args);
+  FitTask task = read_task(args);
   const NamedLoss loss(args, task.photographs, task.warnings);
   task.settings.cells = loss.cells();
   warn(task.warnings, args.quiet);
@@ -102,7 +120,7 @@ int run_fit(const FitArgs& args, const Loaders& loaders) {
     const double expected = 12.0 * settings.starts + 4.0 * double(settings.parameters.size()) * settings.starts;
     bar.update(1 - std::exp(-double(journal.steps.size()) / expected), progress_note(journal, size_t(settings.starts)));
     if (p.better && !args.progress.empty())
-      write_image(side_by_side(task.photographs, *p.pictures), args.progress, task.scene.film.exposure, "srgb");
+      write_image(side_by_side(task.photographs, *p.pictures), args.progress, 0, "srgb");
     if (const double seconds = journal.steps.back().seconds; seconds > written + 5) {
       journal.seconds = written = seconds;
       write_journal(journal, identity, journal_path);

@@ -18,6 +18,7 @@ struct FitArgs : SceneArgs {
   std::string transfer, grey, gains, crop, corners;
   double grey_reflectance = 0.18;
   double front_exposure = 1, back_exposure = 1;
+  double clip_level = 0;  ///< stored value from which a pixel is clipped; 0: what the file's format says
   // Loss.
   bool unaligned = false;
   std::filesystem::path weights;  ///< of a VGG16; empty: none

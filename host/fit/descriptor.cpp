@@ -34,8 +34,12 @@ Blocks finished(std::vector<Block> blocks, const Picture& picture) {
   return blocks;
 }
 
-Block block(std::string name, std::vector<float> values, int passes = 1) {
-  return {std::move(name), 0, 0, std::move(values), passes};
+Block pixels_block(std::string name, std::vector<float> values, int passes) {
+  return {std::move(name), 0, 0, std::move(values), passes, 0};
+}
+
+Block windows_block(std::string name, std::vector<float> values, size_t windows) {
+  return {std::move(name), 0, 0, std::move(values), 1, int(windows)};
 }
 
 void append(std::vector<float>& values, const double* from, size_t count) {
@@ -99,12 +103,12 @@ Descriptor low_pass_descriptor(const DescriptorOptions& options) {
     std::vector<Block> blocks;
     if (options.alignment == Alignment::aligned) {
       const std::vector<Picture> levels = levels_of(picture, options);
-      for (size_t i = 0; i < levels.size(); ++i) blocks.push_back(block(level_name(i), levels[i].pixels));
+      for (size_t i = 0; i < levels.size(); ++i) blocks.push_back(pixels_block(level_name(i), levels[i].pixels, 1));
     } else {
       std::vector<float> values;
-      for (const Window& window : windows_of(picture, options))
-        append(values, color_moments(picture, window).mean.data(), 3);
-      blocks.push_back(block("windows", std::move(values)));
+      const std::vector<Window> windows = windows_of(picture, options);
+      for (const Window& window : windows) append(values, color_moments(picture, window).mean.data(), 3);
+      blocks.push_back(windows_block("windows", std::move(values), windows.size()));
     }
     return finished(std::move(blocks), picture);
   };
@@ -113,15 +117,17 @@ Descriptor low_pass_descriptor(const DescriptorOptions& options) {
 Descriptor color_descriptor(const DescriptorOptions& options) {
   return [options](const Picture& picture) {
     std::vector<float> means, roots, quantiles;
-    for (const Window& window : windows_of(picture, options)) {
+    const std::vector<Window> windows = windows_of(picture, options);
+    for (const Window& window : windows) {
       const ColorMoments moments = color_moments(picture, window);
       append(means, moments.mean.data(), 3);
       append(roots, symmetric_root(moments.covariance).data(), 9);
       append_quantiles(picture, window, quantiles);
     }
-    return finished(
-        {block("mean", std::move(means)), block("spread", std::move(roots)), block("quantiles", std::move(quantiles))},
-        picture);
+    return finished({windows_block("mean", std::move(means), windows.size()),
+                     windows_block("spread", std::move(roots), windows.size()),
+                     windows_block("quantiles", std::move(quantiles), windows.size())},
+                    picture);
   };
 }
 
@@ -130,17 +136,19 @@ Descriptor gradient_descriptor(const DescriptorOptions& options) {
     std::vector<Block> blocks;
     for (const Picture& level : levels_of(picture, options)) {
       std::vector<float> values;
+      const std::string name = level_name(blocks.size());
       if (options.alignment == Alignment::aligned) {
         append_differences(level, 1, 0, values);
         append_differences(level, 0, 1, values);
+        blocks.push_back(pixels_block(name, std::move(values), 2));
       } else {
-        for (const Window& window : windows_of(level, options)) {
+        const std::vector<Window> windows = windows_of(level, options);
+        for (const Window& window : windows) {
           append_edges(level, window, 1, 0, values);
           append_edges(level, window, 0, 1, values);
         }
+        blocks.push_back(windows_block(name, std::move(values), windows.size()));
       }
-      const int directions = options.alignment == Alignment::aligned ? 2 : 1;
-      blocks.push_back(block(level_name(blocks.size()), std::move(values), directions));
     }
     blocks = finished(std::move(blocks), picture);
     // One unit for all levels: a level that has hardly any edges of its own must not count by what aliases into it.
@@ -159,7 +167,7 @@ Descriptor spectrum_descriptor(const DescriptorOptions& options) {
       const std::vector<double> bands = band_deviations(picture, window);
       append(values, bands.data(), bands.size());
     }
-    return finished({block("bands", std::move(values))}, picture);
+    return finished({windows_block("bands", std::move(values), size_t(count * count))}, picture);
   };
 }
 

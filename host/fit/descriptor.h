@@ -16,7 +16,8 @@ struct Block {
   /// than kLeastUnit of its brightness, so that nothing divides by a shade that the picture hardly has.
   double unit;
   std::vector<float> values;
-  int passes = 1;  ///< how often the values run over the picture, from its top down
+  int passes = 1;   ///< how often the values run over the picture, from its top down
+  int windows = 0;  ///< > 0: values of one window after those of another instead, so many windows
 };
 using Blocks = std::vector<Block>;
 constexpr double kLeastUnit = 0.02;

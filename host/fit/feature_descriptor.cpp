@@ -47,15 +47,17 @@ Descriptor feature_descriptor(std::shared_ptr<const FeatureNetwork> network, std
     Blocks blocks;
     for (size_t i = 0; i < maps.size(); ++i) {
       std::vector<float> values;
-      int passes = 1;
-      if (options.alignment == Alignment::aligned)
-        values = std::move(maps[i].values), passes = maps[i].channels;
+      const bool aligned = options.alignment == Alignment::aligned;
+      const int passes = aligned ? maps[i].channels : 1, count = aligned ? 0 : options.windows * options.windows;
+      if (aligned)
+        values = std::move(maps[i].values);
       else
         for (const Window& window : windows(maps[i].width, maps[i].height, options.windows))
           append_gram(maps[i], window, values);
       // Display values have a brightness about 1 whatever the picture's.
       const double unit = unit_of(values, 0.0);
-      blocks.push_back({layers[i].layer, layers[i].weight / sum, unit > 0 ? unit : 1.0, std::move(values), passes});
+      blocks.push_back(
+          {layers[i].layer, layers[i].weight / sum, unit > 0 ? unit : 1.0, std::move(values), passes, count});
     }
     return blocks;
   };

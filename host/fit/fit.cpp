@@ -13,9 +13,9 @@
 namespace wale::fit {
 namespace {
 
-constexpr int kLooks = 4;               // places looked at for each start
-constexpr double kMargin = 0.02;        // starts keep off the bounds, where derivatives are one-sided
-constexpr double kUndetermined = 0.25;  // standard deviation, of the bounds' range
+constexpr int kLooks = 4;                // places looked at for each start
+constexpr double kMargin = 0.02;         // starts keep off the bounds, where derivatives are one-sided
+constexpr double kUndetermined = 0.125;  // standard deviation, of the bounds: a range is four of them
 constexpr double kAlike = 0.95;
 constexpr double kLeastStep = 2e-3;
 constexpr double kDescentShare = 0.6;  // of the time
@@ -54,13 +54,13 @@ Fit::Fit(const Scene& scene, LitPair& renderer, PairResiduals residuals, FitSett
   if (settings_.parameters.empty()) bug("fit: nothing to fit");
 }
 
-Residuals Fit::evaluate(std::span<const double> places, int samples, bool derivatives) {
+Residuals Fit::evaluate(std::span<const double> places, int samples, bool derivatives, uint32_t first_seed) {
   Scene scene = scene_;
   apply_parameters(scene, settings_.target, settings_.parameters, places);
   Residuals out;
   PicturePair mean;
   for (uint32_t half = 0; half < 2; ++half) {
-    const uint32_t seed = 2 * settings_.seed + half;
+    const uint32_t seed = first_seed + half;
     Replicate& replicate = out.replicates.emplace_back();
     if (!derivatives || settings_.method != FitMethod::paths) {
       add(mean, renderer_.render(scene, std::max(1, samples / 2), seed), replicate.values);
@@ -108,7 +108,7 @@ std::vector<std::vector<double>> Fit::look_for_starts(FitJournal& journal) {
   const int looks = std::max(4, settings_.samples / 4);
   for (int i = 1; i < settings_.starts * kLooks && !stop_() && !out_of_time(kDescentShare); ++i) {
     std::vector<double> x = spread_place(own.size(), i);
-    const double loss = evaluate(x, looks, false).loss();
+    const double loss = evaluate(x, looks, false, descent_seed()).loss();
     keep(journal, -1, x, loss);
     seen.emplace_back(loss, std::move(x));
   }
@@ -139,7 +139,7 @@ FitStart Fit::descend(FitJournal& journal, int number, const std::vector<double>
   if (settings_.method == FitMethod::bobyqa) {
     const BobyqaResult r = bobyqa(
         [&](std::span<const double> x) {
-          const double loss = evaluate(x, samples, false).loss();
+          const double loss = evaluate(x, samples, false, descent_seed()).loss();
           note(x, loss);
           return loss;
         },
@@ -151,9 +151,9 @@ FitStart Fit::descend(FitJournal& journal, int number, const std::vector<double>
   options.evaluations = left;
   options.least_step = kLeastStep;
   options.stop = ended;
-  const LeastSquaresResult r =
-      least_squares([&](std::span<const double> x, bool derivatives) { return evaluate(x, samples, derivatives); },
-                    begin, options, [&](std::span<const double> x, double loss, bool) { note(x, loss); });
+  const LeastSquaresResult r = least_squares(
+      [&](std::span<const double> x, bool derivatives) { return evaluate(x, samples, derivatives, descent_seed()); },
+      begin, options, [&](std::span<const double> x, double loss, bool) { note(x, loss); });
   out.to = r.x, out.loss = r.residuals.loss(), out.converged = r.converged;
   return out;
 }
@@ -203,8 +203,9 @@ FitResult Fit::judge(const FitStart& best, const Polished& polished) {
   out.best.to = polished.x;
   out.polished = polished.converged;
   out.best.converged = best.converged && polished.converged;
-  // Beside descents and rounds, to see what they reached.
-  const Residuals at = evaluate(polished.x, std::max(2, settings_.final_samples / kLastShare), false);
+  // Noise that neither descents nor rounds have seen.
+  const uint32_t seed = kRoundSeeds * settings_.seed + kRoundSeeds / 2;
+  const Residuals at = evaluate(polished.x, std::max(2, settings_.final_samples / kLastShare), false, seed);
   out.best.loss = at.loss();
   out.pictures = pictures_;
   // What a render of half the samples has of noise alone is half of the squared difference of two; the mean of both has
@@ -234,6 +235,16 @@ FitResult Fit::judge(const FitStart& best, const Polished& polished) {
 
 std::optional<FitResult> Fit::run(FitJournal& journal, const std::function<bool()>& stop,
                                   const std::function<void(const FitProgress&)>& progress) {
+  try {
+    return whole_run(journal, stop, progress);
+  } catch (const Stopped&) {
+    journal.seconds = now() - begun_;
+    return std::nullopt;
+  }
+}
+
+std::optional<FitResult> Fit::whole_run(FitJournal& journal, const std::function<bool()>& stop,
+                                        const std::function<void(const FitProgress&)>& progress) {
   stop_ = stop;
   progress_ = progress;
   begun_ = now() - journal.seconds;
@@ -265,7 +276,7 @@ std::optional<FitResult> Fit::run(FitJournal& journal, const std::function<bool(
              [&](std::span<const double> x, double loss) { keep(journal, settings_.starts, x, loss); });
   if (stopped()) return std::nullopt;
   FitResult result = judge(best, polished);
-  result.out_of_time = cut_short;
+  result.out_of_time = cut_short || (!polished.converged && out_of_time(kPolishShare));
   journal.seconds = now() - begun_;
   return result;
 }

@@ -67,10 +67,10 @@ struct FittedParameter {
 struct FitResult {
   FitStart best;
   std::vector<FittedParameter> parameters;
-  bool out_of_time = false;                      ///< some descent was cut short
+  bool out_of_time = false;                      ///< a descent or polishing was cut short
   bool polished = false;                         ///< polishing came to rest
   std::vector<std::pair<size_t, size_t>> alike;  ///< parameters whose errors go together (correlation above 0.95)
-  double render_noise = 0;                       ///< loss that the noise of the renders alone makes
+  double render_noise = 0;  ///< squares that noise adds to the pictures' residuals; not in the loss
   PicturePair pictures;
   Scene scene;  ///< with the fitted material
 };
@@ -93,7 +93,11 @@ class Fit {
                                const std::function<void(const FitProgress&)>& progress);
 
  private:
-  Residuals evaluate(std::span<const double> places, int samples, bool derivatives);
+  std::optional<FitResult> whole_run(FitJournal& journal, const std::function<bool()>& stop,
+                                     const std::function<void(const FitProgress&)>& progress);
+  /// Of two replicates, the first by that seed, the second by the next.
+  Residuals evaluate(std::span<const double> places, int samples, bool derivatives, uint32_t first_seed);
+  uint32_t descent_seed() const { return 2 * settings_.seed; }
   void add(PicturePair& mean, const PicturePair& half, std::vector<double>& residuals) const;
   std::vector<std::vector<double>> look_for_starts(FitJournal& journal);
   FitStart descend(FitJournal& journal, int number, const std::vector<double>& from);

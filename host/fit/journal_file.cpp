@@ -16,10 +16,19 @@ using Json = nlohmann::ordered_json;
   user_error("{}: {}: this is no journal of a fit; --redo begins anew", file.string(), what);
 }
 
+constexpr int kVersion = 2;
+constexpr double kMost = 1e9;  // of counts
+
 double number_in(const JsonNode& node, const char* key, const std::filesystem::path& file) {
   const JsonNode* value = node.find(key);
   if (!value || !value->is_number()) damaged(file, std::string("\"") + key + "\" is not a number");
   return value->number;
+}
+
+int count_in(const JsonNode& node, const char* key, const std::filesystem::path& file) {
+  const double value = number_in(node, key, file);
+  if (!(value >= -1 && value < kMost)) damaged(file, std::string("\"") + key + "\" is not a count");
+  return int(value);
 }
 
 const JsonNode& list_in(const JsonNode& node, const char* key, const std::filesystem::path& file) {
@@ -40,7 +49,7 @@ std::vector<double> places_in(const JsonNode& list, size_t axes, const std::file
 
 void write_journal(const FitJournal& journal, const std::string& identity, const std::filesystem::path& file) {
   Json out;
-  out["wale_fit"] = 1;
+  out["wale_fit"] = kVersion;
   out["identity"] = identity;
   out["seconds"] = journal.seconds;
   out["chosen"] = journal.chosen;
@@ -64,6 +73,8 @@ std::optional<FitJournal> read_journal(const std::filesystem::path& file, const 
   const JsonNode root = read_json(file);
   const JsonNode* of = root.find("identity");
   if (root.kind != JsonNode::Kind::object || !root.find("wale_fit") || !of) damaged(file, "\"identity\" is missing");
+  if (number_in(root, "wale_fit", file) != kVersion)
+    user_error("{}: the journal of another version of Wale; --redo begins anew", file.string());
   if (of->text != identity)
     user_error("{}: the journal of a fit of another scene, other photographs or other settings; --redo begins anew",
                file.string());
@@ -77,14 +88,14 @@ std::optional<FitJournal> read_journal(const std::filesystem::path& file, const 
     s.to = places_in(list_in(node, "to", file), axes, file);
     s.first_loss = number_in(node, "first_loss", file);
     s.loss = number_in(node, "loss", file);
-    s.evaluations = int(number_in(node, "evaluations", file));
+    s.evaluations = count_in(node, "evaluations", file);
     const JsonNode* converged = node.find("converged");
     s.converged = converged && converged->boolean;
     out.finished.push_back(std::move(s));
   }
   for (const JsonNode& node : list_in(root, "steps", file).items)
-    out.steps.push_back({int(number_in(node, "start", file)), number_in(node, "seconds", file),
-                         number_in(node, "loss", file), places_in(list_in(node, "places", file), axes, file)});
+    out.steps.push_back({count_in(node, "start", file), number_in(node, "seconds", file), number_in(node, "loss", file),
+                         places_in(list_in(node, "places", file), axes, file)});
   if (out.finished.size() > out.chosen.size()) damaged(file, "more descents than starts");
   return out;
 }

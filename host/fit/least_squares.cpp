@@ -74,12 +74,6 @@ class Descent {
       quiet = gained < options_.least_gain * std::abs(best) ? quiet + 1 : 0;
       converged = quiet == 2;
     }
-    for (size_t r = 0; r < j_.size(); ++r) {
-      Replicate& replicate = at_.replicates[r];
-      replicate.derivatives.clear();
-      for (Eigen::Index k = 0; k < j_[r].cols(); ++k)
-        replicate.derivatives.emplace_back(j_[r].col(k).data(), j_[r].col(k).data() + j_[r].rows());
-    }
     return {x_, at_, evaluations_, converged};
   }
 

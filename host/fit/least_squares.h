@@ -32,7 +32,7 @@ struct LeastSquaresOptions {
 
 struct LeastSquaresResult {
   std::vector<double> x;
-  Residuals residuals;  ///< there, with all derivatives as they were taken last
+  Residuals residuals;  ///< there
   int evaluations = 0;
   bool converged = false;
 };

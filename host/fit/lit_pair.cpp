@@ -58,6 +58,7 @@ Image LitPair::render_side(const Scene& scene, size_t side, bool gradients, int 
   options.spp = samples;
   options.gradients = gradients;
   const Rendered r = wale::render(live_.devices(), live_.world(), lit.integrator, options);
+  if (r.stopped) throw Stopped{};
   if (const uint64_t count = r.counts.events[W_EVENT_NAN]) bug("fit: {} samples were not finite", count);
   return r.image;
 }

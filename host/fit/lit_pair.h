@@ -15,6 +15,9 @@ constexpr std::array<const char*, 2> kLitSides = {"front", "back"};
 /// in both pictures. Throws a user error where a side has no light.
 Scene lit_from(const Scene& scene, size_t side);
 
+/// Thrown when Ctrl-C has ended a render: its picture is not whole.
+struct Stopped {};
+
 /// Renders the two pictures of a scene, again and again as its materials change.
 class LitPair {
  public:
@@ -23,7 +26,7 @@ class LitPair {
           std::array<bool, 2> sides = {true, true});
 
   /// The pictures, each of `samples` paths a pixel, film.exposure applied. Paths of one seed are the same from scene to
-  /// scene as far as materials let them.
+  /// scene as far as materials let them. Throws Stopped.
   PicturePair render(const Scene& scene, int samples, uint32_t seed);
 
   /// The same and, from the same paths, their derivatives by what kernels/appearance/ply_gradient.clh says.

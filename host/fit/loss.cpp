@@ -140,13 +140,22 @@ std::vector<double> Loss::residuals(const PicturePair& pair) const {
 
 std::vector<int> Loss::cells() const {
   std::vector<int> all;
-  for (const Term& term : terms_) {
-    const int first = term.picture == &PicturePair::back && terms_.front().picture == &PicturePair::front ? kStrips : 0;
-    for (const Block& block : term.target) {
-      const size_t count = block.values.size();
-      for (size_t i = 0; i < count; ++i)
-        all.push_back(first + int(i * size_t(block.passes) % count * size_t(kStrips) / count));
+  int first = 0;
+  for (const auto side : {&PicturePair::front, &PicturePair::back}) {
+    int most = 0;
+    for (const Term& term : terms_) {
+      if (term.picture != side) continue;
+      for (const Block& block : term.target) {
+        const size_t count = block.values.size();
+        for (size_t i = 0; i < count; ++i) {
+          const size_t cell = block.windows ? i * size_t(block.windows) / count
+                                            : i * size_t(block.passes) % count * size_t(kStrips) / count;
+          all.push_back(first + int(cell));
+        }
+        most = std::max(most, block.windows ? block.windows : kStrips);
+      }
     }
+    first += most;
   }
   return all;
 }
@@ -168,24 +177,6 @@ double Loss::loss(const PicturePair& pair) const {
   double sum = 0;
   for (const Contribution& part : contributions(pair)) sum += part.value;
   return sum;
-}
-
-double Loss::noise_floor(std::span<const PicturePair> pairs) const {
-  if (pairs.size() < 2) bug("Loss::noise_floor: {} pairs", pairs.size());
-  // Welford's running mean and sum of squared deviations.
-  std::vector<double> mean;
-  double squares = 0, count = 0;
-  for (const PicturePair& pair : pairs) {
-    const std::vector<double> residual = residuals(pair);
-    mean.resize(residual.size());
-    ++count;
-    for (size_t i = 0; i < residual.size(); ++i) {
-      const double before = residual[i] - mean[i];
-      mean[i] += before / count;
-      squares += before * (residual[i] - mean[i]);
-    }
-  }
-  return squares / (count - 1);
 }
 
 }  // namespace wale::fit

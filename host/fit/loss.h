@@ -44,8 +44,9 @@ class Loss {
   /// What is squared and summed up in loss(), always in the same order; the derivative by a parameter is what least
   /// squares need.
   std::vector<double> residuals(const PicturePair& pair) const;
-  /// Of each residual, which of kStrips strips of a block it is from, those of the back after those of the front: what
-  /// a strip of a photograph has of noise, another has not.
+
+  /// Of each residual, from which part of the two photographs it is: one of kStrips strips of pixels, or a window. What
+  /// one part has of noise, another has not; but windows overlap by half.
   std::vector<int> cells() const;
   static constexpr int kStrips = 16;
 
@@ -55,10 +56,6 @@ class Loss {
     double value;
   };
   std::vector<Contribution> contributions(const PicturePair& pair) const;
-
-  /// The loss that renders as noisy as these would have on average if their mean were the target: sum of the residuals'
-  /// variances, unbiased. At least two pairs, rendered alike but for their seed.
-  double noise_floor(std::span<const PicturePair> pairs) const;
 
   const PicturePair& target() const { return target_; }
 

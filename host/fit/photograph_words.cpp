@@ -40,6 +40,7 @@ PhotographOptions photograph_options(const FitArgs& args, bool front) {
   if (args.transfer == "srgb") out.transfer = Transfer::srgb;
   if (args.transfer == "linear") out.transfer = Transfer::linear;
   out.exposure = front ? args.front_exposure : args.back_exposure;
+  if (args.clip_level > 0) out.clip_level = args.clip_level;
   if (!args.crop.empty()) out.crop = rectangle(args.crop, "--crop");
   if (!args.corners.empty()) {
     const std::vector<double> v =
@@ -66,6 +67,10 @@ PicturePair read_photographs(const FitArgs& args, std::vector<std::string>& warn
     return std::move(pair.pictures);
   }
   const bool front = !args.front.empty();
+  if (!front && !args.grey.empty())
+    user_error(
+        "--grey: a card lets no light through, so it is measured in the front photograph, which is not given; "
+        "--gains gives its three numbers");
   PhotographOptions options = photograph_options(args, true);
   options.exposure = front ? args.front_exposure : args.back_exposure;
   Photograph one = read_photograph(front ? args.front : args.back, options);

@@ -22,6 +22,15 @@ bool short_step(std::span<const double> from, const Rounds::Step& step) {
   return true;
 }
 
+// Whether nothing that is known wanted to go farther.
+bool within_reach(std::span<const double> from, const Rounds::Step& step) {
+  for (size_t k = 0; k < from.size(); ++k)
+    if (std::abs(step.x[k] - from[k]) > 0.999 * kReach &&
+        step.errors.deviations[k].value_or(1.0) < kReach / kDeviations)
+      return false;
+  return true;
+}
+
 }  // namespace
 
 Polished polish(const RenderRound& render, std::vector<double> x, int samples, std::span<const int> cells,
@@ -36,9 +45,9 @@ Polished polish(const RenderRound& render, std::vector<double> x, int samples, s
       if (rounds.count() > 1) progress(x, rounds.loss());
     }
     const Rounds::Step step = rounds.solve(x, kReach);
-    // Where the descent ended far off, a few samples lead on before more are spent. Later steps are longer than their
-    // errors may be: they mend those of few samples.
-    if (share == 0) out.converged = short_step(x, step);
+    // Where the descent ended far off, a few samples lead on before more are spent. Later steps may be longer than
+    // their errors: they mend those of few samples.
+    out.converged = share == 0 ? short_step(x, step) : out.converged && within_reach(x, step);
     if (out.converged || ++places >= kFirstPlaces || share > 0) ++share;
     out.x = x = step.x;
     out.errors = step.errors;

@@ -19,11 +19,11 @@ std::string figure(double value) { return fmt::format("{:.3g}", value); }
 
 int shown_width(const Picture& of) { return of.width * std::max(1, kShownSide / std::max(of.width, of.height)); }
 
-std::string look(const FitReport& report, const Picture& picture, const std::string& what) {
+std::string look(const Picture& picture, const std::string& what) {
   std::vector<unsigned char> bytes;
   for (size_t i = 0; i < picture.count(); ++i) {
     float display[3];
-    view_transform(&picture.pixels[3 * i], report.exposure, report.view, display);
+    view_transform(&picture.pixels[3 * i], 0, "srgb", display);
     for (const float v : display) bytes.push_back(static_cast<unsigned char>(std::lround(255 * v)));
   }
   return picture_tag(bytes, picture.width, picture.height, shown_width(picture), what);
@@ -57,16 +57,16 @@ std::string mean_text(const Picture& of) {
   return fmt::format("{} {} {}", figure(mean[0]), figure(mean[1]), figure(mean[2]));
 }
 
-std::string side_row(const FitReport& report, const char* side, const Picture& photograph, const Picture& render) {
+std::string side_row(const char* side, const Picture& photograph, const Picture& render) {
   if (photograph.count() == 0) return {};
   return fmt::format(
       "<h3>Lit from the {0}</h3>\n<div class=row><figure>{1}<figcaption>photograph, mean {2}</figcaption></figure>"
       "<figure>{3}<figcaption>render, mean {4}</figcaption></figure><figure>{5}<figcaption>difference: red is "
       "brighter, "
       "blue darker, full colour at {6:g} % of the mean</figcaption></figure></div>\n",
-      side, look(report, photograph, fmt::format("photograph lit from the {}", side)), mean_text(photograph),
-      look(report, render, fmt::format("render lit from the {}", side)), mean_text(render),
-      difference(photograph, render), 100 * kFullColour);
+      side, look(photograph, fmt::format("photograph lit from the {}", side)), mean_text(photograph),
+      look(render, fmt::format("render lit from the {}", side)), mean_text(render), difference(photograph, render),
+      100 * kFullColour);
 }
 
 constexpr const char* kStyle =
@@ -127,9 +127,9 @@ std::vector<std::string> parameter_warnings(const FitSettings& settings, const F
       out.push_back(fmt::format("{}: these photographs do not determine it; {} is where the fit came to rest",
                                 parameter.name(), figure(p.value)));
     else if (p.at_bound)
-      out.push_back(fmt::format("{}: {} is its bound; wider bounds may fit better (--parameters {}={:g}..{:g})",
-                                parameter.name(), figure(p.value), parameter.group->name, parameter.group->low,
-                                parameter.group->high));
+      out.push_back(
+          fmt::format("{}: {} is its bound; the photographs may ask for more than its bounds, {:g} to {:g}, allow",
+                      parameter.name(), figure(p.value), parameter.low, parameter.high));
   }
   for (const auto& [a, b] : result.alike)
     out.push_back(fmt::format("{} and {} change the pictures alike: one of them, given, would make the other surer",
@@ -165,20 +165,18 @@ std::string report_html(const FitReport& report, const FitSettings& settings, co
     for (const std::string& warning : report.warnings) out += "<li>" + html_text(warning) + "\n";
     out += "</ul>\n";
   }
-  out += side_row(report, "front", report.photographs.front, result.pictures.front);
-  out += side_row(report, "back", report.photographs.back, result.pictures.back);
+  out += side_row("front", report.photographs.front, result.pictures.front);
+  out += side_row("back", report.photographs.back, result.pictures.back);
   out +=
       "<h2>Parameters</h2>\n<table><tr><th>parameter<th>value<th>two standard "
       "deviations<th>start<th>bounds<th>unit<th></tr>\n";
   for (size_t k = 0; k < result.parameters.size(); ++k) out += table_row(settings.parameters[k], result.parameters[k]);
   out += fmt::format(
-      "</table>\n<p>Ranges come from how the residuals change with each parameter, all others free, when what is left "
-      "of the loss is taken for noise that each residual has by itself. Residuals have some of it in common, so these "
-      "are the "
-      "least that ranges can be: ten times as wide is possible.</p>\n<h2>Loss</h2>\n<p>{}.</p>\n<p>At the end {}; "
-      "the noise of the renders alone "
-      "makes "
-      "{}.</p>\n{}",
+      "</table>\n<p>Ranges come from how parts of the photographs differ in what they ask of each parameter, all "
+      "others "
+      "free: noise, and what the model cannot do in one part as in another. What is wrong everywhere alike, as a wrong "
+      "exposure or yarn, is in none of them.</p>\n<h2>Loss</h2>\n<p>{}.</p>\n<p>At the end {}, without the squares "
+      "that noise of the renders adds, {}.</p>\n{}",
       html_text(report.loss), figure(result.best.loss), figure(result.render_noise), loss_curve_svg(journal));
   out += "<table><tr><th>start<th>loss there<th>loss at the end<th>pairs of renders<th></tr>\n";
   for (size_t i = 0; i < journal.finished.size(); ++i) {

@@ -12,8 +12,6 @@ struct FitReport {
   std::string loss;                   ///< its terms, in words
   std::vector<std::string> warnings;  ///< of photographs, weights and parameters
   PicturePair photographs;            ///< as they were compared; the size of the renders
-  double exposure = 0;                ///< stops, of what the page shows
-  std::string view = "srgb";
 };
 
 /// A parameter's row in words: its value, range and what is to be said of it.

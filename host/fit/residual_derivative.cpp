@@ -49,11 +49,11 @@ std::vector<double> residual_derivative(const PairResiduals& residuals, const Li
   // that differ by a hundredth.
   constexpr double kShare = 0.01;
   const double length = std::sqrt(square_sum(along));
-  std::vector<double> out(residuals(rendered.pictures).size(), 0.0);
-  if (!(length > 0)) return out;
+  if (!(length > 0)) return std::vector<double>(residuals(rendered.pictures).size(), 0.0);
   const double step = kShare * std::sqrt(square_sum(rendered.pictures)) / length;
   const std::vector<double> upper = residuals(moved(rendered.pictures, along, step));
   const std::vector<double> lower = residuals(moved(rendered.pictures, along, -step));
+  std::vector<double> out(upper.size());
   for (size_t i = 0; i < out.size(); ++i) out[i] = (upper[i] - lower[i]) / (2 * step);
   return out;
 }

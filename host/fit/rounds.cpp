@@ -127,14 +127,16 @@ Rounds::Step Rounds::solve(std::span<const double> x, double reach) const {
       const Vector slope = b + a * step;
       const Matrix part = a(open, open), noise = m(open, open);
       const Vector s = inverse(information(part, noise)) * (part * (inverse(noise) * -slope(open)));
-      std::vector<Eigen::Index> left;
+      // Of those that go too far, the one that does most is held; without it the others may not.
+      size_t worst = open.size();
+      double most = 0;
       for (size_t i = 0; i < open.size(); ++i) {
         const double v = s[Eigen::Index(i)];
         step[open[i]] = std::clamp(v, lower[open[i]], upper[open[i]]);
-        if (step[open[i]] == v) left.push_back(open[i]);
+        if (const double beyond = std::abs(v - step[open[i]]); beyond > most) most = beyond, worst = i;
       }
-      if (left.size() == open.size()) break;
-      open = left;
+      if (worst == open.size()) break;
+      open.erase(open.begin() + std::ptrdiff_t(worst));
     }
   }
 

@@ -54,11 +54,17 @@ void take_size(Scene& scene, int width, int height, double resolution) {
         "{}: film.size is {} x {}, the photographs' part is {} x {}: of another shape; give --crop or --corners of the "
         "shape that the camera sees, or film.size (--set film.size=[{},{}])",
         scene.file, scene.film.width, scene.film.height, width, height, width, height);
-  scene.film.width = std::max(16, int(std::lround(width * resolution)));
-  scene.film.height = std::max(16, int(std::lround(height * resolution)));
-  if (double(scene.film.width) > width || double(scene.film.height) > height)
-    user_error("--resolution {:g}: {} x {} pixels of photographs that have {} x {}; valid: at most 1, and 16 pixels",
-               resolution, scene.film.width, scene.film.height, width, height);
+  constexpr int kFewest = 16;
+  const double least = double(kFewest) / std::min(width, height);
+  if (!(resolution <= 1) || least > 1)
+    user_error("--resolution {:g}: photographs of {} x {} pixels; valid: at most 1, and {} pixels across and down",
+               resolution, width, height, kFewest);
+  if (resolution < least)
+    user_error("--resolution {:g}: {} x {} pixels are left of {} x {}, and {} are needed; valid: {:.2g} and above",
+               resolution, int(width * resolution), int(height * resolution), width, height, kFewest,
+               std::ceil(100 * least) / 100);
+  scene.film.width = int(std::lround(width * resolution));
+  scene.film.height = int(std::lround(height * resolution));
 }
 
 uint64_t hash_file(const std::filesystem::path& file, uint64_t seed) {
@@ -115,11 +121,13 @@ std::string identity_of(const FitArgs& args, const FitTask& task) {
   uint64_t hash = kHashSeed;
   for (const auto& file : {args.front, args.back, args.weights}) hash = hash_file(file, hash);
   std::string words = fmt::format(
-      "{} {} {}x{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", scene_identity(args.scene, args.set), args.preset,
+      "{} {} {}x{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", scene_identity(args.scene, args.set), args.preset,
       scene.film.width, scene.film.height, scene.film.exposure, settings.target.material, settings.starts,
-      settings.samples, settings.final_samples, args.method, args.transfer, args.grey, args.gains, args.crop,
-      args.corners, args.grey_reflectance, args.front_exposure, args.back_exposure, args.terms, args.layers);
+      settings.samples, args.method, args.transfer, args.grey, args.gains, args.crop, args.corners,
+      args.grey_reflectance, args.front_exposure, args.back_exposure, args.terms, args.layers);
   words += args.unaligned ? " unaligned" : "";
+  words += task.sides[0] ? " front" : "";
+  words += task.sides[1] ? " back" : "";
   for (const FitParameter& p : settings.parameters) words += fmt::format(" {}={}..{}", p.name(), p.low, p.high);
   return fmt::format("{:016x}", hash_bytes(words, hash));
 }

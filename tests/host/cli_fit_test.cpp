@@ -87,8 +87,21 @@ TEST_F(CliFit, GoesOnFromWhereItWas) {
   const Outcome other = run_wale(quick({"--set", "fabrics.0.yarn.plies=2"}));
   EXPECT_EQ(other.status, 1);
   EXPECT_TRUE(contains(other.err, "--redo begins anew")) << other.err;
-  folder_.write("material.json.fit", "{\"wale_fit\": 1, \"identity\": \"0\", \"steps\": 5}");
-  EXPECT_EQ(run_wale(quick({})).status, 1);
+  const auto refusal = [&](const std::string& journal) {
+    folder_.write("material.json.fit", journal);
+    const Outcome run = run_wale(quick({}));
+    EXPECT_EQ(run.status, 1) << run.err;
+    EXPECT_TRUE(contains(run.err, "--redo begins anew")) << run.err;
+    return run.err;
+  };
+  auto journal = nlohmann::json::parse(file_text(folder_ / "material.json.fit"));
+  journal["steps"][0]["places"][0] = 7;
+  EXPECT_TRUE(contains(refusal(journal.dump()), "places in the box are missing"));
+  journal["steps"] = 5;
+  EXPECT_TRUE(contains(refusal(journal.dump()), "\"steps\" is not a list"));
+  journal["wale_fit"] = 1;
+  EXPECT_TRUE(contains(refusal(journal.dump()), "another version"));
+  EXPECT_TRUE(contains(refusal("{}"), "no journal of a fit"));
   EXPECT_EQ(run_wale(quick({"--redo", "--quiet"})).status, 0);
 }
 
@@ -110,9 +123,14 @@ TEST_F(CliFit, RefusesInOneLine) {
   EXPECT_TRUE(contains(line({"--material", "yam"}), "\"yarn\""));
   EXPECT_TRUE(contains(line({"--crop", "0,0,16"}), "4 numbers with commas"));
   EXPECT_TRUE(contains(line({"--crop", "0,12,32,8"}), "of another shape"));
-  EXPECT_TRUE(contains(line({"--loss", "colour=1"}), "\"color\""));
-  EXPECT_TRUE(contains(line({"--layers", "relu1_2"}), "--weights"));
-  EXPECT_TRUE(contains(line({"--weights", at("old.png")}), "old.png"));
+  EXPECT_TRUE(contains(refused(quick({"--loss", "colour=1"})), "\"color\""));
+  EXPECT_TRUE(contains(refused(quick({"--layers", "relu1_2"})), "--weights"));
+  EXPECT_TRUE(contains(refused(quick({"--weights", at("old.png")})), "old.png"));
+  EXPECT_TRUE(contains(line({}), "16 are needed; valid: 0.5 and above"));
+  EXPECT_TRUE(contains(line({"--report", at("front.exr")}), "is that of --front too"));
+  EXPECT_TRUE(contains(line({"--report", at("material.json")}), "is that of -o too"));
+  EXPECT_TRUE(contains(refused({"fit", scene_, "--back", at("back.exr"), "-o", at("m.json"), "--grey", "0,0,4,4"}),
+                       "a card lets no light through"));
   EXPECT_TRUE(contains(line({"--set", "lights.1.name=lamp"}), "none is the back light"));
   EXPECT_TRUE(contains(line({"--set", "materials.yarn.heather={\"yarn\":0.1}"}), "a fit has one colour"));
   EXPECT_TRUE(

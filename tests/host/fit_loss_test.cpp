@@ -201,24 +201,33 @@ TEST(FitLoss, UnalignedForgivesAShift) {
   EXPECT_LT(statistics.loss(moved), 0.1 * statistics.loss(darker));
 }
 
-// Noise of known variance on a flat picture: each value of the first level has it, of the next a quarter, ...
-TEST(FitLoss, TheNoiseFloorIsTheVarianceOfTheResiduals) {
-  LossOptions options;
-  options.weights = TermWeights{.low_pass = 1};
-  options.descriptors.levels = 2;
-  const auto flat = [](int, int, int) { return 0.5; };
-  const Loss loss({painted(64, 64, flat), painted(64, 64, flat)}, options);
-  std::vector<PicturePair> noisy;
-  for (unsigned seed = 0; seed < 8; ++seed)
-    noisy.push_back({random_picture(64, 64, 2 * seed), random_picture(64, 64, 2 * seed + 1)});
-  const double variance = 1.0 / 12 / 0.25;  // of values in [0,1], over the unit squared
-  EXPECT_NEAR(loss.noise_floor(noisy) / (0.5 * variance * (1 + 0.25)), 1, 0.02);
-  // The floor is what such renders lose when their mean is the target.
-  double mean = 0;
-  for (const PicturePair& pair : noisy) mean += loss.loss(pair) / 8;
-  EXPECT_NEAR(loss.noise_floor(noisy) / mean, 1, 0.02);
-  const std::vector<PicturePair> same(3, noisy[0]);
-  EXPECT_EQ(loss.noise_floor(same), 0);
+// A change of one part of a photograph changes residuals of that part's cells alone, of all terms.
+TEST(FitLoss, CellsAreWhereResidualsComeFrom) {
+  constexpr int kSide = 128;
+  for (LossOptions options : all_options()) {
+    options.descriptors.levels = 3;
+    if (options.weights && options.weights->feature > 0) continue;  // the toy network's maps have another shape
+    const bool windows = options.descriptors.alignment == Alignment::unaligned;
+    const bool whole = options.weights && (options.weights->color > 0 || options.weights->spectrum > 0);
+    const PicturePair target{stitches(kSide, kSide), stitches(kSide, kSide, 0, 0.02)};
+    PicturePair other = target;
+    // The lowest eighth of the back.
+    for (int y = kSide * 7 / 8 + 8; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) other.back.pixels[3 * (size_t(y) * kSide + size_t(x))] += 0.2f;
+    const Loss loss = loss_to(target, options);
+    const std::vector<int> cells = loss.cells();
+    const std::vector<double> residuals = loss.residuals(other);
+    ASSERT_EQ(cells.size(), residuals.size());
+    std::set<int> touched;
+    for (size_t i = 0; i < cells.size(); ++i)
+      if (std::abs(residuals[i]) > 1e-6) touched.insert(cells[i]);
+    ASSERT_FALSE(touched.empty());
+    const int last = *std::max_element(cells.begin(), cells.end());
+    EXPECT_EQ(*touched.rbegin(), last);
+    if (whole && !windows) continue;
+    // The lowest strip, and where rows of differences are shorter than strips the one above; or the lowest windows.
+    EXPECT_GE(*touched.begin(), windows ? last - 2 : last - 1) << term_of(loss, target);
+  }
 }
 
 TEST(FitLoss, WhatCannotBeIsRefusedInOneLine) {

@@ -139,6 +139,10 @@ void expect_found(const Answer& a, const std::string& name, bool gloss) {
     } else if (gloss && (group == "roughness" || group == "optical_radius")) {
       EXPECT_NEAR(p.value / a.hidden[k], 1, 0.1) << name << ": " << parameters[k].name();
     }
+    ASSERT_TRUE(p.low && p.high) << name << ": " << parameters[k].name();
+    const double deviation = (*p.high - *p.low) / 4;
+    EXPECT_LT(std::abs(p.value - a.hidden[k]), 4 * deviation)
+        << name << ": " << parameters[k].name() << " and its range";
     EXPECT_TRUE(p.determined) << name << ": " << parameters[k].name();
   }
   EXPECT_TRUE(a.result.best.converged);
