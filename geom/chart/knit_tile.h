@@ -32,6 +32,8 @@ struct KnitSettings {
 
 /// Loop length of a fabric of medium firmness, in yarn diameters.
 constexpr double kPlainLoop = 13.2;
+/// Loop lengths, in yarn diameters: shorter ones jam, longer ones are no cloth.
+constexpr double kShortestLoop = 6, kLongestLoop = 100;
 /// By how much a gauge may be missed, relative.
 constexpr double kGaugeTolerance = 0.005;
 

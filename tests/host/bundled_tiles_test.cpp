@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
+#include <ctime>
 
 #include "geom/chart/knit_tile.h"
 #include "geom/error.h"
@@ -71,7 +73,14 @@ KnitSettings settings_of(const Pattern& tile) {
 // To the bytes on the machine that made them; elsewhere rounding may differ.
 void expect_same_tile(const std::string& name) {
   const Pattern tile = bundled(name);
+  const std::clock_t start = std::clock();
   const KnittedTile again = knit_tile(read_chart(kFolder / (name + ".chart")), settings_of(tile));
+  std::printf(
+      "  %-20s %6.1f s of processors, force %.1e, on the period %.1e, closest %.3f D, period %.3f x %.3f mm, loop %.1f "
+      "mm\n",
+      name.c_str(), double(std::clock() - start) / CLOCKS_PER_SEC, again.relaxed.force, again.relaxed.period_force,
+      again.relaxed.closest, 1e3 * again.pattern.period.x, 1e3 * again.pattern.period.y, 1e3 * again.loop_length);
+  std::fflush(stdout);
   ASSERT_TRUE(again.relaxed.converged) << name;
   EXPECT_NEAR(again.pattern.period.x, tile.period.x, tolerance::kRelaxedAgain * tile.yarn_radius) << name;
   EXPECT_NEAR(again.pattern.period.y, tile.period.y, tolerance::kRelaxedAgain * tile.yarn_radius) << name;
