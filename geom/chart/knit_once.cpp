@@ -115,7 +115,9 @@ KnittedTile knit_once(const StitchChart& chart, const Knit& knit, const KnitSett
     yarns.period = *settings.period;
     relaxing.free_period_x = relaxing.free_period_y = false;
   } else {
-    relaxing.most_strain = kJammed + std::max(relaxing.tension.x, relaxing.tension.y) / relaxing.stretch_stiffness;
+    // What one row and one wale are pulled by: a tile of more of them holds as many more yarns.
+    const dvec2 pull = relaxing.tension / dvec2(knit.rows, knit.wales);
+    relaxing.most_strain = kJammed + std::max(pull.x, pull.y) / relaxing.stretch_stiffness;
   }
   std::vector<Share> shares(size_t(settings.starts), Share(relaxing.force_tolerance));
   std::vector<double> done(shares.size(), 0);
