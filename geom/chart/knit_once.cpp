@@ -100,7 +100,7 @@ dvec3 rounded_to_nanometres(const dvec3& p) { return {rounded(p.x), rounded(p.y)
 
 KnittedTile knit_once(const StitchChart& chart, const Knit& knit, const KnitSettings& settings, double diameters,
                       const std::function<bool(double)>& progress) {
-  constexpr double kFirstShare = 0.8;  // of the work; then comes the finer pass
+  constexpr double kFirstShare = 0.5;  // of the work; then comes the finer pass
   KnittedTile out;
   PeriodicYarns yarns = loop_curves(knit, {0.5 * settings.yarn_thickness, diameters, settings.step});
   RelaxSettings relaxing;
@@ -134,7 +134,11 @@ KnittedTile knit_once(const StitchChart& chart, const Knit& knit, const KnitSett
                                   });
   if (out.relaxed.converged) {
     const int steps = out.relaxed.steps;
-    out.relaxed = relax_finer(yarns, relaxing, [&](double, double) { return go_on(1); });
+    relaxing.max_steps -= steps;
+    Share finer(relaxing.force_tolerance);
+    out.relaxed = relax_finer(yarns, relaxing, [&](double thickness, double force) {
+      return go_on(kFirstShare + (1 - kFirstShare) * finer(thickness, force));
+    });
     out.relaxed.steps += steps;
   }
   if (out.stopped) out.relaxed.converged = false;

@@ -19,7 +19,7 @@ struct KnitSettings {
   double yarn_thickness = 1e-3;  ///< diameter
   double loop_length = 0;        ///< yarn in one stitch; 0: kPlainLoop yarn diameters
   double step = 0.6;  ///< length of a segment, in yarn diameters; half of it in the last pass, and in the tile
-  int max_steps = RelaxSettings().max_steps;         ///< of the relaxation
+  int max_steps = RelaxSettings().max_steps;         ///< of one start and of the last pass after it
   double max_seconds = RelaxSettings().max_seconds;  ///< of all relaxations together
   int starts = kStarts;                              ///< places to relax from: the state of least energy is kept
   unsigned threads = 0;                  ///< 0: as many as the machine has; the tile does not depend on them

@@ -38,5 +38,32 @@ TEST(KnitTile, JamsAreJudgedAlikeInRepeatsOfAnySize) {
   EXPECT_EQ(knit_tile(repeated(4, 4), settings).relaxed.end, RelaxEnd::jammed);
 }
 
+TEST(KnitTile, StepsAreThoseOfBothPassesTogether) {
+  KnitSettings settings = settings_of(13.2);
+  const StitchChart chart = parse_chart("kp\n", "test.chart");
+  const int needed = knit_tile(chart, settings).relaxed.steps;
+  for (const int allowed : {needed - 1, needed - 10}) {
+    settings.max_steps = allowed;
+    const Relaxed reached = knit_tile(chart, settings).relaxed;
+    EXPECT_EQ(reached.end, RelaxEnd::steps) << allowed;
+    EXPECT_EQ(reached.steps, allowed);
+  }
+}
+
+TEST(KnitTile, ProgressGoesOnInTheFinerPass) {
+  KnitSettings settings = settings_of(15);
+  settings.starts = 2;
+  std::vector<double> shares;
+  ASSERT_TRUE(knit_tile(parse_chart("kp\npk\n", "test.chart"), settings, [&](double share) {
+                shares.push_back(share);
+                return true;
+              }).relaxed.converged);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_LT(shares.front(), 0.1);
+  EXPECT_GT(shares.back(), 0.9);
+  EXPECT_LE(shares.back(), 1);
+  EXPECT_LE(std::count(shares.begin(), shares.end(), 1.0), 1) << "what is not done is not told";
+}
+
 }  // namespace
 }  // namespace wale
