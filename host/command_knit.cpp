@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "geom/chart/held_period.h"
 #include "geom/chart/knit_tile.h"
 #include "geom/error.h"
 #include "host/atomic_file.h"
@@ -37,8 +39,9 @@ std::string reached_text(const KnittedTile& tile) {
       r.steps, 100 * r.thickness_share, r.force, r.period_force, tile.force_wanted, r.closest);
 }
 
-// Why it ended, and the nearest thing to try.
-std::pair<std::string, const char*> reason(const KnitSettings& settings, const KnittedTile& tile) {
+// Why it ended, and the nearest thing to try. `nearest`: period that holds, where the one asked for jams.
+std::pair<std::string, std::string> reason(const KnitSettings& settings, const KnittedTile& tile,
+                                           const std::optional<dvec2>& nearest) {
   switch (tile.relaxed.end) {
     case RelaxEnd::time:
       return {fmt::format("the {:g} s of --seconds are over", settings.max_seconds),
@@ -48,7 +51,9 @@ std::pair<std::string, const char*> reason(const KnitSettings& settings, const K
     case RelaxEnd::jammed:
       return {fmt::format("the yarn jams (stretched by {:.1f} %)", 100 * tile.relaxed.strain),
               tile.strain_missed ? "leave --strains out"
-              : settings.period  ? "a larger --period or a longer --loop may do"
+              : nearest ? fmt::format("the nearest that holds, on the way to the free one, is --period {:.4g}x{:.4g}",
+                                      kPerMetre * nearest->x, kPerMetre * nearest->y)
+              : settings.period  ? "another --period or another --loop may do"
               : settings.wales   ? "fewer --wales may do"
               : settings.courses ? "fewer --courses may do"
                                  : "a longer --loop may do"};
@@ -57,10 +62,26 @@ std::pair<std::string, const char*> reason(const KnitSettings& settings, const K
   }
 }
 
-void refuse_if_not_reached(const KnitArgs& args, const KnitSettings& settings, const KnittedTile& tile) {
+// Of the time that is left, as long as the tile itself took a few times over: it is only for the message.
+std::optional<dvec2> period_that_holds(const StitchChart& chart, KnitSettings settings, const KnittedTile& tile,
+                                       double seconds, bool quiet) {
+  if (!settings.period || tile.relaxed.end != RelaxEnd::jammed || tile.stopped || tile.strain_missed) return {};
+  settings.max_seconds = std::min(settings.max_seconds - seconds, 5 + 5 * seconds);
+  if (settings.max_seconds <= 0) return {};
+  Progress bar("nearest period", quiet);
+  const auto found = nearest_period(chart, settings, [&](double share) {
+    bar.update(share);
+    return !stop_requested();
+  });
+  if (found) bar.finish();
+  return found;
+}
+
+void refuse_if_not_reached(const KnitArgs& args, const KnitSettings& settings, const KnittedTile& tile,
+                           const std::optional<dvec2>& nearest) {
   const std::string chart = args.chart.string();
   if (tile.stopped) user_error("{}: stopped, nothing is written: {}", chart, reached_text(tile));
-  const auto [why, advice] = reason(settings, tile);
+  const auto [why, advice] = reason(settings, tile, nearest);
   if (tile.strain_missed)
     user_error("{}: could not be relaxed at strains {:g} x {:g}, nothing is written: {}; {}; {}", chart,
                tile.strain_missed->x, tile.strain_missed->y, why, reached_text(tile), advice);
@@ -146,7 +167,7 @@ int run_knit(const KnitArgs& args) {
   });
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!tile.stopped) bar.finish(tile.relaxed.converged ? "" : "not relaxed");
-  refuse_if_not_reached(args, settings, tile);
+  refuse_if_not_reached(args, settings, tile, period_that_holds(chart, settings, tile, seconds, args.quiet));
   write_pattern_json(tile.pattern, args.output);
   if (args.json == "-")
     fmt::print("{}", report_json(tile, seconds));

@@ -11,6 +11,9 @@ namespace wale {
 KnittedTile knit_once(const StitchChart& chart, const Knit& knit, const KnitSettings& settings, double diameters,
                       const std::function<bool(double)>& progress);
 
+/// Yarn of one stitch that the settings ask for, in yarn diameters.
+double loop_diameters_of(const KnitSettings& settings);
+
 /// Threads to relax on: those asked for, or as many as the machine has.
 unsigned threads_of(const KnitSettings& settings);
 

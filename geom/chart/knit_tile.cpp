@@ -64,9 +64,9 @@ KnittedTile knit_tile(const StitchChart& chart, const KnitSettings& settings,
   const auto until = end_of(all);
   const Knit knit = knit_chart(chart);
   const auto first = [&](double share) { return !progress || progress(settings.strains ? kTileShare * share : share); };
-  const double diameters = settings.loop_length > 0 ? settings.loop_length / settings.yarn_thickness : kPlainLoop;
-  KnittedTile tile = settings.wales || settings.courses ? knit_to_gauge(chart, knit, settings, first)
-                                                        : knit_once(chart, knit, settings, diameters, first);
+  KnittedTile tile = settings.wales || settings.courses
+                         ? knit_to_gauge(chart, knit, settings, first)
+                         : knit_once(chart, knit, settings, loop_diameters_of(settings), first);
   if (settings.strains && tile.relaxed.converged && tile.gauge_reached && !tile.stopped)
     add_strains(tile, settings, until,
                 [&](double share) { return !progress || progress(kTileShare + (1 - kTileShare) * share); });
