@@ -42,10 +42,11 @@ std::string reached_text(const KnittedTile& tile) {
 // Why it ended, and the nearest thing to try. `nearest`: period that holds, where the one asked for jams.
 std::pair<std::string, std::string> reason(const KnitSettings& settings, const KnittedTile& tile,
                                            const std::optional<dvec2>& nearest) {
+  const bool searches = settings.wales || settings.courses;  // from one start, whatever --starts
   switch (tile.relaxed.end) {
     case RelaxEnd::time:
       return {fmt::format("the {:g} s of --seconds are over", settings.max_seconds),
-              settings.starts > 1 ? "more --seconds or fewer --starts may do" : "more --seconds may do"};
+              settings.starts > 1 && !searches ? "more --seconds or fewer --starts may do" : "more --seconds may do"};
     case RelaxEnd::steps:
       return {fmt::format("the {} --steps are done", settings.max_steps), "more of them may do"};
     case RelaxEnd::jammed:
@@ -59,6 +60,31 @@ std::pair<std::string, std::string> reason(const KnitSettings& settings, const K
                                  : "a longer --loop may do"};
     default:
       return {"no step leads on", "a finer --step may do"};
+  }
+}
+
+// Why no loop length was found that gives the gauge, up to the nearest one.
+std::string gauge_reason(const KnitSettings& settings, const KnittedTile& tile) {
+  switch (tile.gauge_end) {
+    case GaugeEnd::time:
+      return fmt::format(
+          "the {:g} s of --seconds are over before a loop length gives this gauge, nothing is written; more of them "
+          "may "
+          "do; the nearest so far",
+          settings.max_seconds);
+    case GaugeEnd::steps:
+      return fmt::format(
+          "no loop length that was relaxed in {} --steps gives this gauge, nothing is written; more of them may do; "
+          "the "
+          "nearest",
+          settings.max_steps);
+    case GaugeEnd::stuck:
+      return "no loop length that could be relaxed gives this gauge, nothing is written; a finer --step may do; the "
+             "nearest";
+    case GaugeEnd::tries:
+      return fmt::format("none of {} loop lengths gives this gauge, nothing is written; the nearest", tile.tries);
+    default:
+      return "no loop length gives this gauge; the nearest";
   }
 }
 
@@ -87,11 +113,10 @@ void refuse_if_not_reached(const KnitArgs& args, const KnitSettings& settings, c
                tile.strain_missed->x, tile.strain_missed->y, why, reached_text(tile), advice);
   if (!tile.relaxed.converged)
     user_error("{}: could not be relaxed, nothing is written: {}; {}; {}", chart, why, reached_text(tile), advice);
-  if (!tile.gauge_reached)
-    user_error(
-        "{}: no loop length gives this gauge; the nearest is {:.2f} wales and {:.2f} courses per 10 cm, with "
-        "--loop {:.4f}",
-        chart, kTenCentimetres * tile.gauge.x, kTenCentimetres * tile.gauge.y, kPerMetre * tile.loop_length);
+  if (tile.gauge_end != GaugeEnd::reached)
+    user_error("{}: {} is {:.2f} wales and {:.2f} courses per 10 cm, with --loop {:.4f}", chart,
+               gauge_reason(settings, tile), kTenCentimetres * tile.gauge.x, kTenCentimetres * tile.gauge.y,
+               kPerMetre * tile.loop_length);
 }
 
 std::string report_text(const KnittedTile& tile, double seconds) {

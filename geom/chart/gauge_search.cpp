@@ -25,7 +25,7 @@ double next_length(std::vector<dvec2> tried, double wanted) {  // (loop length, 
 
 }  // namespace
 
-// Where a loop jams it was too short.
+// Where a loop jams it was too short. Where it ran out of steps nobody knows; longer ones relax sooner.
 KnittedTile knit_to_gauge(const StitchChart& chart, const Knit& knit, const KnitSettings& settings,
                           const std::function<bool(double)>& progress) {
   constexpr int kTries = 10;
@@ -41,9 +41,12 @@ KnittedTile knit_to_gauge(const StitchChart& chart, const Knit& knit, const Knit
   KnitSettings rest = settings;
   rest.starts = 1;
   int tries = 0;
-  while (tries < kTries) {
+  GaugeEnd why = GaugeEnd::none;
+  for (;;) {
     if (tries > 0) rest.max_seconds = std::chrono::duration<double>(end - Clock::now()).count();
-    if (rest.max_seconds <= 0) break;
+    if (rest.max_seconds <= 0) why = GaugeEnd::time;
+    if (tries == kTries && why == GaugeEnd::none) why = GaugeEnd::tries;
+    if (tries == kTries || why == GaugeEnd::time) break;
     KnittedTile tile = knit_once(chart, knit, rest, length,
                                  [&](double share) { return !progress || progress((tries + share) / kTries); });
     ++tries;
@@ -53,9 +56,13 @@ KnittedTile knit_to_gauge(const StitchChart& chart, const Knit& knit, const Knit
     }
     double next = 1.3 * length;
     if (!tile.relaxed.converged) {
+      if (tile.relaxed.end == RelaxEnd::steps) why = GaugeEnd::steps;
+      if (tile.relaxed.end == RelaxEnd::stuck) why = GaugeEnd::stuck;
+      if (tile.relaxed.end == RelaxEnd::time) why = GaugeEnd::time;
       jams = std::max(jams, length);
       if (!tried.empty()) next = 0.5 * (length + best->loop_length / settings.yarn_thickness);
       if (!best) best = std::move(tile);
+      if (why == GaugeEnd::time) break;
     } else {
       tried.emplace_back(length, tile.gauge[axis]);
       if (tried.size() == 1 || miss(tile) < miss(*best)) best = std::move(tile);
@@ -71,7 +78,7 @@ KnittedTile knit_to_gauge(const StitchChart& chart, const Knit& knit, const Knit
     length = next;
   }
   best->tries = tries;
-  best->gauge_reached = best->relaxed.converged && miss(*best) <= kGaugeTolerance;
+  best->gauge_end = best->relaxed.converged && miss(*best) <= kGaugeTolerance ? GaugeEnd::reached : why;
   return std::move(*best);
 }
 

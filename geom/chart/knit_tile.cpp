@@ -67,7 +67,7 @@ KnittedTile knit_tile(const StitchChart& chart, const KnitSettings& settings,
   KnittedTile tile = settings.wales || settings.courses
                          ? knit_to_gauge(chart, knit, settings, first)
                          : knit_once(chart, knit, settings, loop_diameters_of(settings), first);
-  if (settings.strains && tile.relaxed.converged && tile.gauge_reached && !tile.stopped)
+  if (settings.strains && tile.relaxed.converged && tile.gauge_end == GaugeEnd::reached && !tile.stopped)
     add_strains(tile, settings, until,
                 [&](double share) { return !progress || progress(kTileShare + (1 - kTileShare) * share); });
   return tile;
