@@ -87,6 +87,7 @@ void refuse_beyond_yarn(const PeriodicYarns& yarns, const dvec2& period) {
 Relaxed relax_finer(PeriodicYarns& yarns, RelaxSettings settings, const std::function<bool(double, double)>& progress) {
   settings.coarse_first = false;
   settings.contact_samples /= 2;  // as many along the yarn
+  if (settings.watch) settings.watch(settings.path, in_diameters(yarns));
   yarns = refined(yarns);
   return relax(yarns, settings, progress);
 }
@@ -112,6 +113,7 @@ KnittedTile knit_once(const StitchChart& chart, const Knit& knit, const KnitSett
   relaxing.tension = settings.tension + settings.blocking * dvec2(knit.rows, knit.wales);
   relaxing.max_steps = settings.max_steps;
   relaxing.max_seconds = settings.max_seconds;
+  relaxing.watch = settings.watch;
   relaxing.until = end_of(relaxing);
   double pulled = 0;  // strain of the yarn by tension alone
   if (settings.period) {
@@ -142,6 +144,7 @@ KnittedTile knit_once(const StitchChart& chart, const Knit& knit, const KnitSett
   if (out.relaxed.converged) {
     const int steps = out.relaxed.steps;
     relaxing.max_steps -= steps;
+    relaxing.path = size_t(settings.starts);
     relaxing.most_strain = kJammed + pulled;
     Share finer(relaxing.force_tolerance);
     out.relaxed = relax_finer(yarns, relaxing, [&](double thickness, double force) {

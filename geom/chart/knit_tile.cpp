@@ -41,6 +41,8 @@ void add_strains(KnittedTile& tile, const KnitSettings& settings, std::chrono::s
   RelaxSettings relaxing;
   relaxing.max_steps = settings.max_steps;
   relaxing.until = until;
+  relaxing.watch = settings.watch;
+  relaxing.path = size_t(settings.starts) + 1;
   RelaxedStrains found = relax_strains(tile.yarns, relaxing, strains, strains, threads_of(settings), progress);
   tile.stopped = found.stopped;
   if (tile.stopped) return;

@@ -28,6 +28,8 @@ struct KnitSettings {
   double blocking = 0;                   ///< pull on every row and on every wale, beside the tension, B / D^2
   std::optional<dvec2> period;           ///< of the tile, held; else it is free
   std::optional<double> wales, courses;  ///< gauge to reach by the loop length, per metre; at most one of them
+  /// RelaxSettings::watch. Paths are the starts, then the finer pass, then the shapes of the table of strains.
+  std::function<void(size_t path, const PeriodicYarns&)> watch;
 };
 
 /// Loop length of a fabric of medium firmness, in yarn diameters.

@@ -39,6 +39,7 @@ void strain_tile(PeriodicYarns& yarns, const dvec2& period, const RelaxSettings&
     const auto near = near_pairs(yarns, segments, reach, settings.neighbours * 2 * yarns.radius);
     const double share = safe_share(yarns, segments, near, reach, 0, step);
     yarns = moved(yarns, step, share);
+    if (settings.watch) settings.watch(settings.path, in_diameters(yarns));
     if (share < 1) continue;
     yarns.period = period;
     return;
@@ -75,14 +76,19 @@ RelaxedStrains relax_strains(const PeriodicYarns& relaxed, const RelaxSettings& 
     if (!go_on(0, 0)) return;
     PeriodicYarns& shape = shapes[node(ic, iw)] = shapes[from];
     const dvec2 strain(course[ic], wale[iw]);
-    strain_tile(shape, relaxed.period * (1.0 + strain), held);
-    out.reached[node(ic, iw)] = relax(shape, held, go_on);
+    RelaxSettings own = held;
+    own.path += node(ic, iw);
+    if (own.watch) own.watch(own.path, in_diameters(shape));
+    strain_tile(shape, relaxed.period * (1.0 + strain), own);
+    out.reached[node(ic, iw)] = relax(shape, own, go_on);
     const std::lock_guard lock(telling);
     ++done;
   };
   shapes[node(zero_course, zero_wale)] = relaxed;
   Relaxed& middle = out.reached[node(zero_course, zero_wale)];
-  middle = relax(shapes[node(zero_course, zero_wale)], held, go_on);
+  RelaxSettings own = held;
+  own.path += node(zero_course, zero_wale);
+  middle = relax(shapes[node(zero_course, zero_wale)], own, go_on);
   ++done;
   const PeriodicYarns base = shapes[node(zero_course, zero_wale)];
   // Along the course at wale strain 0, then every column from there.
