@@ -150,8 +150,13 @@ TEST(StitchChart, BadJson) {
   json_refused("[\"kkk\", [\"k\", \"k\", \"k2tog\"]]", {"c.json: row 2:3: this decrease takes 2"});
   json_refused("[{\"stitches\": \"kk\", \"yarns\": \"abc\"}]", {"c.json: row 1:", "more than the 2"});
   json_refused("[{\"stitches\": \"kkk\", \"yarns\": [\"a\", \"b\"]}]", {"c.json: row 1:", "mid-air"});
-  json_refused("[{\"stiches\": \"kk\"}]", {"rows[0]", "unknown key 'stiches'"});
-  json_refused("[7]", {"rows[0]", "an object is expected"});
+  json_refused("[{\"stiches\": \"kk\"}]", {"c.json: row 1: unknown key 'stiches'"});
+  json_refused("[7]", {"c.json: row 1: an object is expected"});
+  json_refused("[\"k\", [\"k\", 7]]", {"c.json: row 2:2: a text is expected"});
+  json_refused("[{\"stitches\": [7]}]", {"c.json: row 1:1: a text is expected"});
+  json_refused("[{\"stitches\": 7}]", {"c.json: row 1: a text is expected"});
+  json_refused("[{\"stitches\": \"kk\", \"yarns\": [\"a\", 7]}]", {"c.json: row 1, yarns:2: a text is expected"});
+  json_refused("[{\"stitches\": \"kk\", \"yarns\": [\"a\", \"a b\"]}]", {"c.json: row 1, yarns:2: \"a b\" is not one"});
   json_refused("7", {"rows", "a list is expected"});
   expect_user_error([] { json("{"); }, {"c.json:1"});
   expect_user_error([] { json(R"({"wale_chart": 2, "rows": ["k"]})"); }, {"only version 1"});
