@@ -191,7 +191,7 @@ void expect_kept(const StitchChart& chart) {
 
 TEST(RelaxTopology, NoYarnPassesThroughAnother) {
   for (const char* chart : {"k", "kp", "p\nk", "k2p2", "kp\npk", "ks\nkk", "kT\nkp", "o/\nkk", "\\o\nkk",
-                            "k2 | ab\nk2 | ba", "o p2tog\nkk", "o cdd o\nkkk", "c1/1f k\nk3"})
+                            "k2 | ab\nk2 | ba", "o p2tog\nkk", "o cdd o\nkkk", "o sk2p o\nkkk", "c1/1f k\nk3"})
     expect_kept(parse_chart(chart, chart));
 }
 
