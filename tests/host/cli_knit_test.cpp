@@ -43,6 +43,7 @@ TEST_F(CliKnit, TileHoldsItsChartAndSettings) {
   EXPECT_NEAR(told["wales_per_10cm"].get<double>(), 0.1 * 2 / tile.period.x, 1e-3);
   EXPECT_GE(told["closest"].get<double>(), 0.95);
   EXPECT_LE(told["force"].get<double>(), told["force_wanted"].get<double>());
+  EXPECT_GT(told["processor_seconds"].get<double>(), 0);
 }
 
 TEST_F(CliKnit, SameBytesAgain) {
