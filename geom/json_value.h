@@ -68,6 +68,8 @@ class JsonValue {
     if (!json_.is_string()) complain("a text is expected");
     return json_.get<std::string>();
   }
+  /// The same, under another place in messages.
+  JsonValue called(const std::string& place) const { return {file_, place, json_}; }
   [[noreturn]] void complain(const std::string& what) const {
     user_error("{}: {}{}{}", file_, place_, place_.empty() ? "" : ": ", what);
   }

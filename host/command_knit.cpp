@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
+#include "geom/chart/held_period.h"
 #include "geom/chart/knit_tile.h"
 #include "geom/error.h"
 #include "host/atomic_file.h"
@@ -37,18 +40,22 @@ std::string reached_text(const KnittedTile& tile) {
       r.steps, 100 * r.thickness_share, r.force, r.period_force, tile.force_wanted, r.closest);
 }
 
-// Why it ended, and the nearest thing to try.
-std::pair<std::string, const char*> reason(const KnitSettings& settings, const KnittedTile& tile) {
+// Why it ended, and the nearest thing to try. `nearest`: period that holds, where the one asked for jams.
+std::pair<std::string, std::string> reason(const KnitSettings& settings, const KnittedTile& tile,
+                                           const std::optional<dvec2>& nearest) {
+  const bool searches = settings.wales || settings.courses;  // from one start, whatever --starts
   switch (tile.relaxed.end) {
     case RelaxEnd::time:
       return {fmt::format("the {:g} s of --seconds are over", settings.max_seconds),
-              settings.starts > 1 ? "more --seconds or fewer --starts may do" : "more --seconds may do"};
+              settings.starts > 1 && !searches ? "more --seconds or fewer --starts may do" : "more --seconds may do"};
     case RelaxEnd::steps:
       return {fmt::format("the {} --steps are done", settings.max_steps), "more of them may do"};
     case RelaxEnd::jammed:
       return {fmt::format("the yarn jams (stretched by {:.1f} %)", 100 * tile.relaxed.strain),
               tile.strain_missed ? "leave --strains out"
-              : settings.period  ? "a larger --period or a longer --loop may do"
+              : nearest ? fmt::format("the nearest that holds, on the way to the free one, is --period {:.4g}x{:.4g}",
+                                      kPerMetre * nearest->x, kPerMetre * nearest->y)
+              : settings.period  ? "another --period or another --loop may do"
               : settings.wales   ? "fewer --wales may do"
               : settings.courses ? "fewer --courses may do"
                                  : "a longer --loop may do"};
@@ -57,20 +64,60 @@ std::pair<std::string, const char*> reason(const KnitSettings& settings, const K
   }
 }
 
-void refuse_if_not_reached(const KnitArgs& args, const KnitSettings& settings, const KnittedTile& tile) {
+// Why no loop length was found that gives the gauge, up to the nearest one.
+std::string gauge_reason(const KnitSettings& settings, const KnittedTile& tile) {
+  switch (tile.gauge_end) {
+    case GaugeEnd::time:
+      return fmt::format(
+          "the {:g} s of --seconds are over before a loop length gives this gauge, nothing is written; more of them "
+          "may "
+          "do; the nearest so far",
+          settings.max_seconds);
+    case GaugeEnd::steps:
+      return fmt::format(
+          "no loop length that was relaxed in {} --steps gives this gauge, nothing is written; more of them may do; "
+          "the "
+          "nearest",
+          settings.max_steps);
+    case GaugeEnd::stuck:
+      return "no loop length that could be relaxed gives this gauge, nothing is written; a finer --step may do; the "
+             "nearest";
+    case GaugeEnd::tries:
+      return fmt::format("none of {} loop lengths gives this gauge, nothing is written; the nearest", tile.tries);
+    default:
+      return "no loop length gives this gauge; the nearest";
+  }
+}
+
+// Of the time that is left, as long as the tile itself took a few times over: it is only for the message.
+std::optional<dvec2> period_that_holds(const StitchChart& chart, KnitSettings settings, const KnittedTile& tile,
+                                       double seconds, bool quiet) {
+  if (!settings.period || tile.relaxed.end != RelaxEnd::jammed || tile.stopped || tile.strain_missed) return {};
+  settings.max_seconds = std::min(settings.max_seconds - seconds, 5 + 5 * seconds);
+  if (settings.max_seconds <= 0) return {};
+  Progress bar("nearest period", quiet);
+  const auto found = nearest_period(chart, settings, [&](double share) {
+    bar.update(share);
+    return !stop_requested();
+  });
+  if (found) bar.finish();
+  return found;
+}
+
+void refuse_if_not_reached(const KnitArgs& args, const KnitSettings& settings, const KnittedTile& tile,
+                           const std::optional<dvec2>& nearest) {
   const std::string chart = args.chart.string();
   if (tile.stopped) user_error("{}: stopped, nothing is written: {}", chart, reached_text(tile));
-  const auto [why, advice] = reason(settings, tile);
+  const auto [why, advice] = reason(settings, tile, nearest);
   if (tile.strain_missed)
     user_error("{}: could not be relaxed at strains {:g} x {:g}, nothing is written: {}; {}; {}", chart,
                tile.strain_missed->x, tile.strain_missed->y, why, reached_text(tile), advice);
   if (!tile.relaxed.converged)
     user_error("{}: could not be relaxed, nothing is written: {}; {}; {}", chart, why, reached_text(tile), advice);
-  if (!tile.gauge_reached)
-    user_error(
-        "{}: no loop length gives this gauge; the nearest is {:.2f} wales and {:.2f} courses per 10 cm, with "
-        "--loop {:.4f}",
-        chart, kTenCentimetres * tile.gauge.x, kTenCentimetres * tile.gauge.y, kPerMetre * tile.loop_length);
+  if (tile.gauge_end != GaugeEnd::reached)
+    user_error("{}: {} is {:.2f} wales and {:.2f} courses per 10 cm, with --loop {:.4f}", chart,
+               gauge_reason(settings, tile), kTenCentimetres * tile.gauge.x, kTenCentimetres * tile.gauge.y,
+               kPerMetre * tile.loop_length);
 }
 
 std::string report_text(const KnittedTile& tile, double seconds) {
@@ -96,7 +143,7 @@ std::string report_text(const KnittedTile& tile, double seconds) {
                                       p.strains.wale.size(), p.strains.course.front(), p.strains.course.back()));
 }
 
-std::string report_json(const KnittedTile& tile, double seconds) {
+std::string report_json(const KnittedTile& tile, double seconds, double processor_seconds) {
   const Pattern& p = tile.pattern;
   nlohmann::ordered_json json;
   json["name"] = p.name;
@@ -116,6 +163,7 @@ std::string report_json(const KnittedTile& tile, double seconds) {
   json["steps"] = tile.relaxed.steps;
   json["loop_lengths_tried"] = tile.tries;
   json["seconds"] = seconds;
+  json["processor_seconds"] = processor_seconds;  // of all threads
   return json.dump(1) + "\n";
 }
 
@@ -139,19 +187,21 @@ int run_knit(const KnitArgs& args) {
   if (args.loop_diameters > 0) settings.loop_length = args.loop_diameters * settings.yarn_thickness;
   catch_stop_signals();
   const auto start = std::chrono::steady_clock::now();
+  const std::clock_t processor_start = std::clock();
   Progress bar("knit", args.quiet);
   const KnittedTile tile = knit_tile(chart, settings, [&](double share) {
     bar.update(share);
     return !stop_requested();
   });
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double processor_seconds = double(std::clock() - processor_start) / CLOCKS_PER_SEC;
   if (!tile.stopped) bar.finish(tile.relaxed.converged ? "" : "not relaxed");
-  refuse_if_not_reached(args, settings, tile);
+  refuse_if_not_reached(args, settings, tile, period_that_holds(chart, settings, tile, seconds, args.quiet));
   write_pattern_json(tile.pattern, args.output);
   if (args.json == "-")
-    fmt::print("{}", report_json(tile, seconds));
+    fmt::print("{}", report_json(tile, seconds, processor_seconds));
   else if (!args.json.empty())
-    write_text_file(args.json, report_json(tile, seconds));
+    write_text_file(args.json, report_json(tile, seconds, processor_seconds));
   if (args.json != "-") fmt::print("{}", report_text(tile, seconds));
   return 0;
 }

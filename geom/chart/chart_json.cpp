@@ -1,7 +1,7 @@
 // {"wale_chart": 1, "name": "...", "yarns": {"a": "#rrggbb", "b": null}, "rows": [row, ...]}, the last row knitted
 // first. A row is a text as in the text language, a list of its words, or {"stitches": text or list, "yarns": text or
 // list of letters}. Messages name row and column as those of texts do: "row 2:5" is the second row and its fifth
-// character, or the fifth word where it is a list.
+// character, or the fifth word where it is a list; "row 2, yarns:5" is a letter of its yarns.
 #include "geom/chart/chart_row.h"
 #include "geom/error.h"
 #include "geom/json_value.h"
@@ -10,27 +10,30 @@ namespace wale {
 namespace {
 
 // Words with blanks between; each one is looked at by itself, so that a message names its place in the list.
-std::string words_of(const JsonValue& list, const std::string& where, const char* what) {
+std::string words_of(const JsonValue& list, const std::string& place, const char* what) {
   std::string text;
   size_t number = 0;
-  for (const JsonValue& item : list.items()) {
+  for (const JsonValue& unnamed : list.items()) {
+    const JsonValue item = unnamed.called(fmt::format("{}:{}", place, ++number));
     const std::string word = item.text();
     if (word.empty() || word.find_first_of(" \t\r\n|") != std::string::npos)
-      user_error("{}:{}: \"{}\" is not one {}", where, number + 1, one_line(word), what);
+      item.complain(fmt::format("\"{}\" is not one {}", one_line(word), what));
     text += word + " ";
-    ++number;
   }
   return text;
 }
 
-ChartRow row_of(const JsonValue& value, const std::string& where, std::vector<ChartYarn>& yarns, bool closed) {
+ChartRow row_of(const JsonValue& value, const std::string& file, const std::string& place,
+                std::vector<ChartYarn>& yarns, bool closed) {
+  const std::string where = file + ": " + place;
   if (value.is_text()) return parse_chart_row(value.text(), where, 1, yarns, closed);
   const bool named = !value.is_list();
   if (named) value.only({"stitches", "yarns"});
-  const JsonValue stitches = named ? value["stitches"] : value;
+  const JsonValue stitches = named ? value["stitches"].called(place) : value;
   std::vector<int> word_of;  // of each symbol
   std::string text;
   if (stitches.is_list()) {
+    text = words_of(stitches, place, "word of stitches");
     int number = 0;
     for (const JsonValue& item : stitches.items()) {
       ++number;
@@ -38,14 +41,14 @@ ChartRow row_of(const JsonValue& value, const std::string& where, std::vector<Ch
       const ChartRow alone = parse_chart_row(item.text(), fmt::format("{}:{}", where, number), 1, none, true);
       word_of.insert(word_of.end(), alone.cells.size(), number);
     }
-    text = words_of(stitches, where, "word of stitches");
   } else {
     text = stitches.text();
     if (text.find('|') != std::string::npos) user_error("{}: yarns stand under \"yarns\" here", where);
   }
   if (named && value.has("yarns")) {
-    const JsonValue letters = value["yarns"];
-    text += "|" + (letters.is_list() ? words_of(letters, where + ", yarn", "letter of a yarn") : letters.text());
+    const std::string there = place + ", yarns";
+    const JsonValue letters = value["yarns"].called(there);
+    text += "|" + (letters.is_list() ? words_of(letters, there, "letter of a yarn") : letters.text());
   }
   ChartRow row = parse_chart_row(text, where, 1, yarns, closed);
   for (size_t i = 0; i < word_of.size() && i < row.cells.size(); ++i) row.cells[i].column = word_of[i];
@@ -79,10 +82,11 @@ StitchChart parse_chart_json(std::string_view text, const std::filesystem::path&
   if (rows.size() > size_t(kMostStitches)) root["rows"].complain(fmt::format("more than {} rows", kMostStitches));
   size_t stitches = 0;
   for (size_t r = rows.size(); r-- > 0;) {
-    chart.rows.push_back(row_of(rows[r], fmt::format("{}: row {}", file, r + 1), chart.yarns, closed));
+    const std::string place = fmt::format("row {}", r + 1);
+    const JsonValue row = rows[r].called(place);
+    chart.rows.push_back(row_of(row, file, place, chart.yarns, closed));
     stitches += size_t(chart.rows.back().makes());
-    if (stitches > size_t(kMostStitches))
-      rows[r].complain(fmt::format("a tile has at most {} stitches", kMostStitches));
+    if (stitches > size_t(kMostStitches)) row.complain(fmt::format("a tile has at most {} stitches", kMostStitches));
   }
   return chart;
 }

@@ -1,8 +1,16 @@
 // Knitout (McCann et al., textiles-lab.github.io/knitout/knitout.html): what the needles of a V-bed machine do. Each
 // pass of a carrier becomes a row: knit on the front bed k, on the back bed p, tuck t or T, loops that it leaves alone
 // s or S, with the yarn between the beds; a stitch on an empty needle is a yarn over. Transfers move loops: two or
-// three on one needle are a decrease, the last that came uppermost; blocks that changed places are a cable, the one
-// that came back first in front. The chart is the unit that repeats in the middle.
+// three on one needle are a decrease, blocks that changed places a cable. The chart is the unit that repeats in the
+// middle.
+//
+// Which loop of a needle lies uppermost is not in the specification, and follows from the needle: a transfer hangs a
+// loop over the tip, which points to the gap between the beds, so that those that were there lie nearer to the
+// needle's own side of the cloth. To that side the next loop is pulled through all of them. So the first to come is
+// uppermost where they are pulled to; of a cable, the block that comes back first lies in front. The rules of
+// precedence of TopoKnit say the same (Kapllani et al. 2022, Loop order analysis of weft-knitted textiles,
+// doi:10.3390/textiles2020015: loops of the front bed before those transferred to it, in turn). A pile that goes over
+// to the other bed keeps its order from front to back: what was nearest to the one bed is farthest from the other.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -139,12 +147,11 @@ class Machine {
     held_.erase(at);
     ++transfers_;
     for (Held& loop : loops) loop.arrival = transfers_, loop.moved += to.number - from.number;
-    // The last to come lies in front.
     std::vector<Held>& there = held_[to];
     if (there.size() + loops.size() > kMostLoops)
       fail(fmt::format("{} loops on needle {}; a chart takes up to {} as one", there.size() + loops.size(),
                        needle_text(to), kMostLoops));
-    there.insert(there.begin(), loops.begin(), loops.end());
+    there.insert(there.end(), loops.rbegin(), loops.rend());
   }
 
   void end_pass() {
@@ -223,7 +230,8 @@ class Machine {
             std::ranges::equal(loops, taken_order(known.stitch), {}, [&](const Held& h) { return h.wale - before; }))
           return {known.stitch};
     user_error(
-        "{}:{}: {} loops on needle {} are {}; what can be read is k2tog, ssk, k3tog, k3togtbl and cdd on the front "
+        "{}:{}: {} loops on needle {} are {}; what can be read is k2tog, ssk, k3tog, k3togtbl, sk2p and cdd on the "
+        "front "
         "bed, p2tog and ssp on the back bed",
         file_, pass.line, loops.size(), needle_text(needle),
         !worked ? "left alone"
@@ -264,7 +272,7 @@ class Machine {
 
   std::string file_;
   int line_ = 0;
-  std::map<Needle, std::vector<Held>> held_;
+  std::map<Needle, std::vector<Held>> held_;  // the first to come first
   std::optional<Pass> pass_;
   std::map<std::string, int> carriers_;
   std::vector<ChartRow> rows_;

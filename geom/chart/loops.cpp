@@ -40,6 +40,7 @@ class Knitter {
         case Stitch::ssp:
         case Stitch::k3tog:
         case Stitch::k3togtbl:
+        case Stitch::sk2p:
         case Stitch::cdd: {
           Needle all;
           for (const int from : taken_order(cell.stitch)) all.insert(all.end(), first[from].begin(), first[from].end());

@@ -69,6 +69,7 @@ std::string cell_text(const ChartCell& cell) {
     case Stitch::ssp:
     case Stitch::k3tog:
     case Stitch::k3togtbl:
+    case Stitch::sk2p:
     case Stitch::cdd:
       for (const StitchWord& known : stitch_words())
         if (known.stitch == cell.stitch) return fmt::format(" {} ", known.word);
@@ -84,7 +85,7 @@ std::string cell_text(const ChartCell& cell) {
 
 std::span<const int> taken_order(Stitch stitch) {
   static constexpr int kTwo[] = {0, 1}, kTwoTurned[] = {1, 0}, kThree[] = {0, 1, 2}, kThreeTurned[] = {2, 1, 0},
-                       kMiddle[] = {1, 2, 0};
+                       kPassedOver[] = {2, 0, 1}, kMiddle[] = {1, 2, 0};
   switch (stitch) {
     case Stitch::k2tog:
     case Stitch::ssp:  // uppermost behind, and so not in front
@@ -96,6 +97,8 @@ std::span<const int> taken_order(Stitch stitch) {
       return kThree;
     case Stitch::k3togtbl:
       return kThreeTurned;
+    case Stitch::sk2p:
+      return kPassedOver;
     case Stitch::cdd:
       return kMiddle;
     default:
@@ -103,10 +106,12 @@ std::span<const int> taken_order(Stitch stitch) {
   }
 }
 
+// The first word of a stitch is that of chart_lines().
 std::span<const StitchWord> stitch_words() {
   static constexpr StitchWord kWords[] = {
       {"k2tog", Stitch::k2tog}, {"ssk", Stitch::ssk},           {"p2tog", Stitch::p2tog}, {"ssp", Stitch::ssp},
-      {"k3tog", Stitch::k3tog}, {"k3togtbl", Stitch::k3togtbl}, {"cdd", Stitch::cdd},     {"yo", Stitch::yarn_over}};
+      {"k3tog", Stitch::k3tog}, {"k3togtbl", Stitch::k3togtbl}, {"sk2p", Stitch::sk2p},   {"cdd", Stitch::cdd},
+      {"s2kp", Stitch::cdd},    {"yo", Stitch::yarn_over}};
   return kWords;
 }
 

@@ -25,6 +25,7 @@ enum class Stitch {
   ssp,         ///< ... the right one in front, leaning left; from behind it is an ssk
   k3tog,       ///< three as one, from left to right behind each other, leaning right
   k3togtbl,    ///< ... from right to left, leaning left (sssk)
+  sk2p,        ///< ... the right one in front, then the left one, leaning left (slip 1, k2tog, pass it over)
   cdd,         ///< ... the middle one in front, then the right one, upright (s2kp)
   cable,       ///< knit loops that have changed places
 };

@@ -83,7 +83,7 @@ class Swelling {
   }
 
   void see() const {
-    if (settings_.watch) settings_.watch(yarns_);
+    if (settings_.watch) settings_.watch(settings_.path, yarns_);
   }
 
   // Whether forces came below the tolerance.
@@ -114,6 +114,15 @@ class Swelling {
 
 }  // namespace
 
+PeriodicYarns in_diameters(PeriodicYarns yarns) {
+  const double diameter = 2 * yarns.radius;
+  for (dvec3& p : yarns.points) p /= diameter;
+  for (PeriodicYarn& y : yarns.yarns) y.length /= diameter;
+  yarns.period /= diameter;
+  yarns.radius = 0.5;
+  return yarns;
+}
+
 Clock::time_point end_of(const RelaxSettings& settings) {
   const auto left = std::chrono::duration<double>(std::min(settings.max_seconds, 1e6));
   return std::min(settings.until, Clock::now() + std::chrono::duration_cast<Clock::duration>(left));
@@ -124,15 +133,12 @@ Relaxed relax(PeriodicYarns& yarns, const RelaxSettings& settings,
   constexpr double kCoarseTolerance = 0.03, kCoarseClosest = 0.9;
   const double diameter = 2 * yarns.radius;
   const auto end = end_of(settings);
-  PeriodicYarns scaled = yarns;
-  for (dvec3& p : scaled.points) p /= diameter;
-  for (PeriodicYarn& y : scaled.yarns) y.length /= diameter;
-  scaled.period /= diameter;
+  PeriodicYarns scaled = in_diameters(yarns);
   Relaxed out;
   if (settings.coarse_first) {
     // Half the points do for the long way; cutting segments in two moves nothing.
     if (auto coarse = coarsened(scaled, settings.neighbours, [&](const PeriodicYarns& state) {
-          if (settings.watch) settings.watch(state);
+          if (settings.watch) settings.watch(settings.path, state);
           return Clock::now() > end;
         })) {
       RelaxSettings rough = settings;

@@ -24,10 +24,14 @@ struct RelaxSettings {
   int max_steps = 3000;
   double max_seconds = 600;
   std::chrono::steady_clock::time_point until = std::chrono::steady_clock::time_point::max();  ///< ends it too
-  /// Sees every state on the way, in yarn diameters: points go straight from one to the next. Where their number
-  /// doubles or halves, points came or went in the middles of segments.
-  std::function<void(const PeriodicYarns&)> watch;
+  /// Sees every state on a path, in yarn diameters: points go straight from one to the next. Where their number doubles
+  /// or halves, points came or went in the middles of segments. Paths may run at the same time.
+  std::function<void(size_t path, const PeriodicYarns&)> watch;
+  size_t path = 0;  ///< what watch() is told; of several starts or shapes, that of the first
 };
+
+/// The same yarns, of which the diameter is 1.
+PeriodicYarns in_diameters(PeriodicYarns yarns);
 
 /// When a relaxation that begins now ends.
 std::chrono::steady_clock::time_point end_of(const RelaxSettings& settings);

@@ -70,8 +70,13 @@ Relaxed relax_from_starts(PeriodicYarns& yarns, const RelaxSettings& settings, i
       tries[i].reached.end = RelaxEnd::time;
       return;
     }
-    if (i > 0) shake(tries[i].yarns, kShaken, settings.neighbours, i);
-    tries[i].reached = relax(tries[i].yarns, timed, [&](double share, double force) {
+    RelaxSettings own = timed;
+    own.path += i;
+    if (i > 0) {
+      if (own.watch) own.watch(own.path, in_diameters(tries[i].yarns));
+      shake(tries[i].yarns, kShaken, settings.neighbours, i);
+    }
+    tries[i].reached = relax(tries[i].yarns, own, [&](double share, double force) {
       const std::lock_guard lock(telling);
       return go_on = go_on && (!progress || progress(int(i), share, force));
     });

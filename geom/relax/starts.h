@@ -9,7 +9,8 @@ namespace wale {
 /// least energy (of those that converged, if any did; the first of equals). Not converged if time ended any start. A
 /// knit has many states of rest, as its loops buckle to one side or the other; which one relaxation finds hangs on its
 /// path. Places are the same every time. Runs on `threads` threads; the result does not depend on their number.
-/// `progress` gets the start's number and what relax() tells, one call at a time; false stops all.
+/// Every start is a path of settings.watch. `progress` gets the start's number and what relax() tells, one call at a
+/// time; false stops all.
 Relaxed relax_from_starts(PeriodicYarns& yarns, const RelaxSettings& settings, int starts, unsigned threads,
                           const std::function<bool(int start, double share, double force)>& progress = {});
 

@@ -15,6 +15,6 @@ for name in "${names[@]}"; do
   for side in front back; do
     "$wale" render "$root/scenes/gallery_$side.json" --set "fabrics.0.pattern=\"$here/$name.json\"" \
       -o "$work/a.png" --spp "${SPP:-48}" --size "${SIZE:-256x256}" --quiet
-    oiiotool "$work/a.png" --attrib CompressionQuality 82 -o "$out/${name}_$side.jpg"
+    oiiotool --nosoftwareattrib "$work/a.png" --attrib CompressionQuality 82 -o "$out/${name}_$side.jpg"
   done
 done

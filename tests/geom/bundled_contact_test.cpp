@@ -141,18 +141,38 @@ TEST(BundledContact, AllSixteen) { EXPECT_GE(names().size(), 16u); }
 
 INSTANTIATE_TEST_SUITE_P(Tiles, BundledContact, testing::ValuesIn(names()), [](const auto& p) { return p.param; });
 
-// The measure itself, where the answer is known: straight yarns, 0.97 apart across tiles, one of them bent like a hair
-// pin whose neighbours do not count.
+// A yarn across a tile, bent like a hair pin of two limbs 0.6 apart, in pieces of 0.3.
+Yarns hair_pin(double limb) {
+  Yarns y;
+  y.period = {9, 9};
+  const std::vector<dvec3> corners = {{0, 0, 0},          {3, 0, 0},   {3, 0.6, 0}, {3 - limb, 0.6, 0},
+                                      {3 - limb, 4.5, 0}, {9, 4.5, 0}, {9, 0, 0}};
+  double arc = 0;
+  for (size_t c = 0; c + 1 < corners.size(); ++c) {
+    const double length = glm::distance(corners[c], corners[c + 1]);
+    const int pieces = int(std::round(length / 0.3));
+    for (int k = 0; k < pieces; ++k, arc += length / pieces)
+      y.lines.push_back({glm::mix(corners[c], corners[c + 1], double(k) / pieces),
+                         glm::mix(corners[c], corners[c + 1], double(k + 1) / pieces), 0, arc});
+  }
+  y.length = {arc}, y.shift = {{1, 0}};
+  return y;
+}
+
+// The measure itself, where the answer is known: segments; straight yarns, which are nearer to each other in the next
+// tile than in their own; and a bend, whose limbs count only where two diameters of yarn or more are between them.
 TEST(BundledContact, MeasureIsRight) {
   EXPECT_DOUBLE_EQ(nearest({0, 0, 0}, {2, 0, 0}, {1, -1, 0.5}, {1, 1, 0.5}).distance, 0.5);
   EXPECT_DOUBLE_EQ(nearest({0, 0, 0}, {2, 0, 0}, {0, 0.7, 0}, {2, 0.7, 0}).distance, 0.7);
   EXPECT_DOUBLE_EQ(nearest({0, 0, 0}, {1, 0, 0}, {4, 4, 0}, {9, 9, 0}).distance, 5);
   Yarns y;
-  y.period = {4, 2 * 0.97};
+  y.period = {4, 1.94};
   for (int i = 0; i < 4; ++i) y.lines.push_back({{i, 0, 0}, {i + 1, 0, 0}, 0, double(i)});
   for (int i = 0; i < 4; ++i) y.lines.push_back({{i, 1.1, 0}, {i + 1, 1.1, 0}, 1, double(i)});
   y.length = {4, 4}, y.shift = {{1, 0}, {1, 0}};
-  EXPECT_NEAR(closest(y), 2 * 0.97 - 1.1, 1e-12) << "to the next tile";
+  EXPECT_NEAR(closest(y), 1.94 - 1.1, 1e-12) << "to the next tile";
+  EXPECT_NEAR(closest(hair_pin(1.2)), 0.6, 1e-12) << "its ends have 2.4 and 3 of yarn between them";
+  EXPECT_NEAR(closest(hair_pin(0.3)), std::hypot(0.9, 0.6), 1e-12) << "1.2 are no contact; 2.1 are, farther off";
 }
 
 }  // namespace

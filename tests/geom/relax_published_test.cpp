@@ -1,5 +1,6 @@
 // A chart relaxed beside the tile of the same pattern that Sperl et al. 2020 (MADYPG) simulated, with its yarn and its
-// loop length.
+// loop length. Their cartridge-belt rib, of segments of 0.47 D, is not at rest here: it moves by 0.67 yarn radii with
+// segments of 0.45 D and by 0.94 with half of that. What it moves to is what the chart relaxes into.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -47,6 +48,46 @@ double distance_to(const Centrelines& lines, const dvec3& p) {
       }
   }
   return best;
+}
+
+// Every second point of a tile with fine segments: enough for distances of curves that are as smooth as these, and
+// sixteen times as quick.
+Centrelines thinned(const PeriodicYarns& yarns) {
+  Centrelines out;
+  out.period = yarns.period;
+  for (const PeriodicYarn& yarn : yarns.yarns)
+    for (uint32_t i = 0; i < yarn.count; i += 2) {
+      const dvec3 around(i + 2 < yarn.count ? dvec2(0) : dvec2(yarn.shift) * yarns.period, 0);
+      out.segments.emplace_back(yarns.points[yarn.first + i], yarns.points[yarn.first + (i + 2) % yarn.count] + around);
+    }
+  return out;
+}
+
+// The yarns of a tile, with an even number of segments of about `step` metres.
+PeriodicYarns yarns_of(const Pattern& tile, double step) {
+  PeriodicYarns out;
+  out.period = tile.period;
+  out.radius = tile.yarn_radius;
+  const PartnerMap partners = match_partners(tile);
+  for (const YarnChain& chain : tile_yarns(tile, partners)) {
+    std::vector<dvec3> points = test::cycle_points(tile, chain);
+    points.push_back(points.front() + dvec3(dvec2(chain.shift) * tile.period, 0));
+    std::vector<double> arc{0};
+    for (size_t i = 1; i < points.size(); ++i) arc.push_back(arc.back() + glm::distance(points[i - 1], points[i]));
+    PeriodicYarn yarn;
+    yarn.first = uint32_t(out.points.size());
+    yarn.count = 2 * uint32_t(std::round(0.5 * arc.back() / step));
+    yarn.shift = chain.shift;
+    yarn.length = arc.back();
+    size_t k = 0;
+    for (uint32_t i = 0; i < yarn.count; ++i) {
+      const double at = arc.back() * i / yarn.count;
+      while (arc[k + 1] < at) ++k;
+      out.points.push_back(glm::mix(points[k], points[k + 1], (at - arc[k]) / (arc[k + 1] - arc[k])));
+    }
+    out.yarns.push_back(yarn);
+  }
+  return out;
 }
 
 // Largest distance of a point of `one`, moved by `shift`, from the lines of `other`; from `enough` on any such
@@ -98,7 +139,7 @@ double hausdorff(Centrelines a, const Centrelines& b) {
 
 struct Published {
   const char *file, *chart;
-  double period, distance;  // tolerances: share, yarn radii
+  bool at_rest;  // in our model too, nearly
   bool takes_minutes = false;
 };
 
@@ -125,27 +166,42 @@ TEST_P(RelaxPublished, HasTheShapeOfTheSimulatedTile) {
     ASSERT_TRUE(ours.relaxed.converged);
     settings.loop_length *= theirs.length / centrelines_of(ours.pattern).length;
   }
-  const auto distance = [&](const KnittedTile& tile) {
-    return hausdorff(centrelines_of(tile.pattern), theirs) / published.yarn_radius;
-  };
   const dvec2 periods = ours.pattern.period / published.period - 1.0;
   settings.period = published.period;
   const KnittedTile held = knit_tile(chart, settings);
   ASSERT_TRUE(held.relaxed.converged);
-  const double free_distance = distance(ours), held_distance = distance(held);
-  std::printf("  %s: periods %+.2f %%, %+.2f %%; Hausdorff distance %.3f yarn radii, %.3f at the published period\n",
-              expected.file, 100 * periods.x, 100 * periods.y, free_distance, held_distance);
-  EXPECT_LT(std::abs(periods.x), expected.period);
-  EXPECT_LT(std::abs(periods.y), expected.period);
-  EXPECT_LT(held_distance, expected.distance);
+  const auto apart = [&](const Centrelines& a, const Centrelines& b) {
+    return hausdorff(a, b) / published.yarn_radius;
+  };
+  const Centrelines held_lines = thinned(held.yarns);
+  const double distance = apart(held_lines, theirs);
+  std::printf("  %s: periods %+.2f %%, %+.2f %%; %.3f yarn radii apart at the published period\n", expected.file,
+              100 * periods.x, 100 * periods.y, distance);
+  EXPECT_LT(std::abs(periods.x), tolerance::kPublishedPeriod);
+  EXPECT_LT(std::abs(periods.y), tolerance::kPublishedPeriod);
+  if (expected.at_rest) {
+    EXPECT_LT(distance, tolerance::kPublishedDistance);
+    return;
+  }
+  // Where the published tile itself goes, of segments as long as those of ours.
+  PeriodicYarns from_theirs = yarns_of(published, 0.5 * settings.step * settings.yarn_thickness);
+  RelaxSettings relaxing;
+  relaxing.coarse_first = relaxing.free_period_x = relaxing.free_period_y = false;
+  relaxing.contact_samples /= 2;
+  const Relaxed reached = relax(from_theirs, relaxing);
+  ASSERT_TRUE(reached.converged);
+  const Centrelines at_rest = thinned(from_theirs);
+  const double moved = apart(at_rest, theirs), same = apart(held_lines, at_rest);
+  std::printf("  it moves by %.3f until it is at rest, %.3f from the chart's tile; energies %.3f and %.3f B / D\n",
+              moved, same, reached.energy, held.relaxed.energy);
+  EXPECT_GT(moved, tolerance::kPublishedDistance) << "it is at rest: compare with it";
+  EXPECT_LT(same, tolerance::kPublishedAtRest);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Madypg, RelaxPublished,
-    testing::Values(Published{"stockinette", "k2\nk2\n", tolerance::kPublishedPeriod, tolerance::kPublishedDistance},
-                    Published{"cartridge_belt_rib", "p s p2\nk3 S\np s p2\nk3 S\n", tolerance::kPublishedRibPeriod,
-                              tolerance::kPublishedRibDistance, true}),
-    [](const auto& test) { return std::string(test.param.file); });
+INSTANTIATE_TEST_SUITE_P(Madypg, RelaxPublished,
+                         testing::Values(Published{"stockinette", "k2\nk2\n", true},
+                                         Published{"cartridge_belt_rib", "p s p2\nk3 S\np s p2\nk3 S\n", false, true}),
+                         [](const auto& test) { return std::string(test.param.file); });
 
 }  // namespace
 }  // namespace wale

@@ -157,8 +157,8 @@ TEST(RelaxStrains, LoopsOpenBeforeTheYarnStretches) {
     return sum;
   };
   const double rest = length(1, 0, 0, true), grown = length(2, 0.5, 0, false) / rest - 1;
-  // MADYPG's table of stockinette with the same loop length: 0.0725, and 0.238 affine (strain_growth_test.cpp).
-  EXPECT_NEAR(grown, 0.0725, 0.1 * 0.0725);
+  // MADYPG's table of stockinette with about this loop length: 0.0703, and 0.240 affine (strain_growth_test.cpp).
+  EXPECT_NEAR(grown, 0.0703, 0.1 * 0.0703);
   EXPECT_GT(length(2, 0.5, 0, true) / rest - 1, 0.2);
 }
 

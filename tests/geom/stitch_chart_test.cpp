@@ -43,7 +43,11 @@ TEST(StitchChart, Decreases) {
   EXPECT_EQ(chart_lines(chart), (Lines{"o p2tog  ssp oo k3tog o k3togtbl ooo cdd o"}));
   EXPECT_EQ(chart_lines(text(chart_lines(chart)[0])), chart_lines(chart));
   refused("k4\nk2 cdd\n", {"c.chart:2:4: this decrease takes 3 loops", "of the 4"});
-  refused("k p3tog\nk2\n", {"c.chart:1:7", "\"g\" is no stitch", "p2tog, ssp, k3tog, k3togtbl, cdd"});
+  refused("k p3tog\nk2\n", {"c.chart:1:7", "\"g\" is no stitch", "p2tog, ssp, k3tog, k3togtbl, sk2p, cdd, s2kp"});
+  // Words, and what they are with blanks.
+  EXPECT_EQ(chart_lines(text("o sk2p o o s2kp o\n")), (Lines{"o sk2p oo cdd o"}));
+  EXPECT_EQ(chart_lines(text("s k2 p\nk4\n")), (Lines{"skkp", "kkkk"}));
+  refused("k4\nsk2p\n", {"c.chart:2:1: this row takes 3 of the 4"});
 }
 
 TEST(StitchChart, YarnsOfStitches) {
@@ -150,8 +154,13 @@ TEST(StitchChart, BadJson) {
   json_refused("[\"kkk\", [\"k\", \"k\", \"k2tog\"]]", {"c.json: row 2:3: this decrease takes 2"});
   json_refused("[{\"stitches\": \"kk\", \"yarns\": \"abc\"}]", {"c.json: row 1:", "more than the 2"});
   json_refused("[{\"stitches\": \"kkk\", \"yarns\": [\"a\", \"b\"]}]", {"c.json: row 1:", "mid-air"});
-  json_refused("[{\"stiches\": \"kk\"}]", {"rows[0]", "unknown key 'stiches'"});
-  json_refused("[7]", {"rows[0]", "an object is expected"});
+  json_refused("[{\"stiches\": \"kk\"}]", {"c.json: row 1: unknown key 'stiches'"});
+  json_refused("[7]", {"c.json: row 1: an object is expected"});
+  json_refused("[\"k\", [\"k\", 7]]", {"c.json: row 2:2: a text is expected"});
+  json_refused("[{\"stitches\": [7]}]", {"c.json: row 1:1: a text is expected"});
+  json_refused("[{\"stitches\": 7}]", {"c.json: row 1: a text is expected"});
+  json_refused("[{\"stitches\": \"kk\", \"yarns\": [\"a\", 7]}]", {"c.json: row 1, yarns:2: a text is expected"});
+  json_refused("[{\"stitches\": \"kk\", \"yarns\": [\"a\", \"a b\"]}]", {"c.json: row 1, yarns:2: \"a b\" is not one"});
   json_refused("7", {"rows", "a list is expected"});
   expect_user_error([] { json("{"); }, {"c.json:1"});
   expect_user_error([] { json(R"({"wale_chart": 2, "rows": ["k"]})"); }, {"only version 1"});
@@ -186,7 +195,11 @@ TEST(Loops, PurledDecreasesAreKnittedOnesFromBehind) {
   EXPECT_EQ(left.loops[1].place, 1);
 }
 TEST(Loops, ThreeAreTakenInTheirOrder) {
-  for (const auto& [word, places] : {std::pair{"k3tog", ivec3(0, 1, 2)}, {"k3togtbl", {2, 1, 0}}, {"cdd", {2, 0, 1}}}) {
+  for (const auto& [word, places] : {std::pair{"k3tog", ivec3(0, 1, 2)},
+                                     {"k3togtbl", {2, 1, 0}},
+                                     {"sk2p", {1, 2, 0}},
+                                     {"cdd", {2, 0, 1}},
+                                     {"s2kp", {2, 0, 1}}}) {
     const Knit knit = knit_chart(text(std::string("o ") + word + " o\nkkk\n"));
     for (size_t i = 0; i < 3; ++i) {
       EXPECT_EQ(knit.loops[i].place, places[int(i)]) << word << " " << i;

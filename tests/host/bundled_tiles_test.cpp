@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
+#include <ctime>
 
 #include "geom/chart/knit_tile.h"
 #include "geom/error.h"
 #include "geom/stitch.h"
 #include "host/world.h"
+#include "tests/bundled_settings.h"
 #include "tests/tolerances.h"
 
 namespace wale {
@@ -43,35 +46,17 @@ TEST(BundledTiles, EveryChartHasItsTile) {
   EXPECT_GE(charts, 16u);
 }
 
-// As make.sh ran it: the tile holds its settings.
-KnitSettings settings_of(const Pattern& tile) {
-  KnitSettings out;
-  for (const auto& [name, value] : tile.settings) {
-    if (name == "yarn_thickness")
-      out.yarn_thickness = value;
-    else if (name == "loop_length")
-      out.loop_length = value;
-    else if (name == "step")
-      out.step = value;
-    else if (name == "course_tension")
-      out.tension.x = value;
-    else if (name == "wale_tension")
-      out.tension.y = value;
-    else if (name == "blocking")
-      out.blocking = value;
-    else if (name == "starts")
-      out.starts = int(value);
-    else
-      ADD_FAILURE() << tile.name << ": " << name;
-  }
-  out.strains = !tile.strains.empty();
-  return out;
-}
-
 // To the bytes on the machine that made them; elsewhere rounding may differ.
 void expect_same_tile(const std::string& name) {
   const Pattern tile = bundled(name);
-  const KnittedTile again = knit_tile(read_chart(kFolder / (name + ".chart")), settings_of(tile));
+  const std::clock_t start = std::clock();
+  const KnittedTile again = knit_tile(read_chart(kFolder / (name + ".chart")), test::bundled_settings(tile));
+  std::printf(
+      "  %-20s %6.1f s of processors, force %.1e, on the period %.1e, closest %.3f D, period %.3f x %.3f mm, loop %.1f "
+      "mm\n",
+      name.c_str(), double(std::clock() - start) / CLOCKS_PER_SEC, again.relaxed.force, again.relaxed.period_force,
+      again.relaxed.closest, 1e3 * again.pattern.period.x, 1e3 * again.pattern.period.y, 1e3 * again.loop_length);
+  std::fflush(stdout);
   ASSERT_TRUE(again.relaxed.converged) << name;
   EXPECT_NEAR(again.pattern.period.x, tile.period.x, tolerance::kRelaxedAgain * tile.yarn_radius) << name;
   EXPECT_NEAR(again.pattern.period.y, tile.period.y, tolerance::kRelaxedAgain * tile.yarn_radius) << name;
@@ -88,18 +73,15 @@ void expect_same_tile(const std::string& name) {
     compare(again.pattern.strains.offsets[s], tile.strains.offsets[s]);
 }
 
-// Those that take a second or two; the others are long tests.
-constexpr const char* kQuick[] = {"stockinette_relaxed", "garter", "rib_1x1", "rib_2x2", "half_cardigan",
-                                  "cartridge_belt_rib"};
-
 TEST(BundledTiles, ChartsGiveTheTiles) {
-  for (const char* name : kQuick) expect_same_tile(name);
+  for (const char* name : test::kQuickTiles) expect_same_tile(name);
 }
 
 TEST(BundledTiles, ChartsGiveTheTilesThatTakeLong) {
   if (!std::getenv("WALE_LONG_TESTS")) GTEST_SKIP() << "takes minutes; set WALE_LONG_TESTS=1";
   for (const std::string& name : bundled_tiles())
-    if (name != "stockinette" && std::find(std::begin(kQuick), std::end(kQuick), name) == std::end(kQuick))
+    if (name != "stockinette" &&
+        std::find(std::begin(test::kQuickTiles), std::end(test::kQuickTiles), name) == std::end(test::kQuickTiles))
       expect_same_tile(name);
 }
 
