@@ -29,7 +29,7 @@ EditorChange scene_change(const Texts& set, const std::string& gesture, const st
     change.make = [](EditorState&) {};
   if (gesture.empty()) return change;
   change.stroke = gesture;
-  for (const std::string& one : set) change.stroke += "\n" + one.substr(0, one.find('='));
+  for (const std::string& one : set) change.stroke.append(1, '\n').append(one, 0, one.find('='));
   return change;
 }
 
