@@ -104,7 +104,7 @@ void EditorSession::confirm(const Version& version) {
 
 bool EditorSession::another_pending() const {
   const std::lock_guard lock(mutex_);
-  return stop_ || edits_.pending();
+  return edits_.pending();
 }
 
 void EditorSession::run(std::span<const Device> device, const Loaders& loaders,
@@ -123,9 +123,11 @@ void EditorSession::run(std::span<const Device> device, const Loaders& loaders,
     std::unique_lock lock(mutex_);
     if (!edits_.pending() && !stop_) wake_.wait_for(lock, kIdle);
   };
+  // What is begun is seen once, in all views: while a control is dragged, the next version is always there already.
+  const auto next_wanted = [&] { return (!visible || views.all_seen()) && another_pending(); };
   while (!stop_asked() && !stopped()) {
     publish_state(false);
-    if (another_pending()) {
+    if (next_wanted()) {
       Version next = next_version();
       if (visible && next.fault.empty() && traced(next.scenes) == traced(version->scenes)) {
         version = std::move(next);
@@ -170,7 +172,7 @@ void EditorSession::run(std::span<const Device> device, const Loaders& loaders,
     }
     bool due = false;
     try {
-      while (!due && !another_pending() && !stop_asked()) due = views.step(*view);
+      while (!due && !next_wanted() && !stop_asked() && !stopped()) due = views.step(*view);
     } catch (const Error& error) {  // two views take turns on the device, and files are read anew
       if (error.fault() != wale::Fault::user) throw;
       visible = false;
