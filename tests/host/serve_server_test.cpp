@@ -141,8 +141,8 @@ TEST_F(ServeServer, PicturesAreSeenInTheMiddleOfADrag) {
   int first = 0, last = 0;
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; std::chrono::steady_clock::now() - start < std::chrono::seconds(2); ++i) {
-    const auto reply =
-        served_->post("/edit", fmt::format(R"({{"set": ["camera.fov={:g}"], "gesture": "drag"}})", 20 + i * 0.01));
+    const auto reply = served_->post(
+        "/edit", fmt::format(R"({{"set": ["fabrics.0.gauge.wales={:g}"], "gesture": "drag"}})", 30 + i * 1e-3));
     if (reply.status != 200) continue;  // more than a hand can do
     last = std::atoi(reply.body.c_str() + std::strlen("{\"revision\": "));
     if (first == 0) first = last;
