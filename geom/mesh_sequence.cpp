@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geom/error.h"
+#include "geom/numbered_name.h"
 
 namespace wale {
 namespace {
@@ -114,10 +115,28 @@ BaseMesh MeshSequence::load(long number) const {
   }
 }
 
-BaseMesh MeshSequence::read(long number) const {
+std::shared_ptr<const BaseMesh> MeshSequence::read(long number) const {
+  constexpr size_t kKept = 2;
   if (!there(number)) user_error("{}", missing(number));
-  BaseMesh mesh = load(number);
-  if (source_.changing) return mesh;
+  for (const auto& [known, mesh] : kept_)
+    if (known == number) return mesh;
+  if (const auto tried = faults_.find(number); tried != faults_.end() && !tried->second.empty())
+    user_error("{}", tried->second);
+  try {
+    const bool at_rest = number == place(double(source_.rest)).before;
+    auto mesh = std::make_shared<BaseMesh>(at_rest ? rest() : load(number));
+    if (!source_.changing) take_topology_of_rest(*mesh, number);
+    faults_[number].clear();
+    kept_.emplace_back(number, mesh);
+    if (kept_.size() > kKept) kept_.pop_front();
+    return mesh;
+  } catch (const Error& error) {
+    if (error.fault() == Fault::user && source_.hold) faults_[number] = error.what();
+    throw;
+  }
+}
+
+void MeshSequence::take_topology_of_rest(BaseMesh& mesh, long number) const {
   rest();
   if (mesh.position.size() != rest_->position.size() || mesh.triangle != rest_->triangle)
     user_error(
@@ -129,17 +148,16 @@ BaseMesh MeshSequence::read(long number) const {
             : "",
         rest_->position.size(), rest_->triangle.size());
   mesh.uv = rest_->uv;
-  return mesh;
 }
 
-BaseMesh MeshSequence::read_or_hold(long number, std::vector<std::string>* notes) const {
+std::shared_ptr<const BaseMesh> MeshSequence::read_or_hold(long number, std::vector<std::string>* notes) const {
   if (!source_.hold) return read(number);
   // That number, or the last before it that can be read; the first stands for what is before it.
   auto candidate = held(number);
   std::string fault = there(number) ? "" : missing(number);
   while (true) {
     try {
-      BaseMesh mesh = read(*candidate);
+      auto mesh = read(*candidate);
       if (*candidate != number && notes)
         notes->push_back(fmt::format("{}; {} is held", fault, store_->name(*candidate)));
       return mesh;
@@ -158,19 +176,18 @@ std::vector<long>::const_iterator MeshSequence::held(long number) const {
   return after == numbers_.begin() ? after : after - 1;
 }
 
-// What read_or_hold() reads for a number, tried once. Of frames that are an error it is any.
+// What read_or_hold() reads for a number. Of frames that are an error it is any.
 long MeshSequence::shown(long number) const {
   auto candidate = held(number);
   if (!source_.hold) return *candidate;
   const auto readable = [&](long n) {
-    const auto known = readable_.find(n);
-    if (known != readable_.end()) return known->second;
+    if (const auto tried = faults_.find(n); tried != faults_.end()) return tried->second.empty();
     try {
       read(n);
-      return readable_[n] = true;
+      return true;
     } catch (const Error& error) {
       if (error.fault() != Fault::user) throw;
-      return readable_[n] = false;
+      return false;
     }
   };
   while (candidate != numbers_.begin() && !readable(*candidate)) --candidate;
@@ -179,13 +196,28 @@ long MeshSequence::shown(long number) const {
 
 BaseMesh MeshSequence::at(double frame, std::vector<std::string>* notes) const {
   const Place p = place(frame);
-  BaseMesh mesh = read_or_hold(p.before, notes);
+  BaseMesh mesh = *read_or_hold(p.before, notes);
   if (p.share == 0) return mesh;
-  const BaseMesh after = read_or_hold(p.after, notes);
+  const auto after = read_or_hold(p.after, notes);
   for (size_t i = 0; i < mesh.position.size(); ++i)
-    mesh.position[i] += p.share * (after.position[i] - mesh.position[i]);
+    mesh.position[i] += p.share * (after->position[i] - mesh.position[i]);
   compute_normals(mesh);
   return mesh;
+}
+
+std::vector<std::filesystem::path> MeshSequence::files(double frame) const {
+  if (!source_.cache.empty()) return {source_.base, source_.cache};
+  if (!NumberedName::is_one(source_.frames)) return {source_.frames};
+  // Also one that is not there yet: behind the last frame the motion goes on, until another one comes up.
+  const Place p = place(frame);
+  std::vector<std::filesystem::path> out = {store_->name(p.after + source_.step)};
+  for (const long number : {p.before, p.after, place(double(source_.rest)).before}) {
+    out.push_back(store_->name(number));
+    if (!source_.hold) continue;
+    out.push_back(store_->name(shown(number)));
+    if (!there(number)) out.push_back(NumberedName(source_.frames).folder());
+  }
+  return out;
 }
 
 uint64_t MeshSequence::hash(double frame) const {

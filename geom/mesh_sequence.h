@@ -1,9 +1,11 @@
 #pragma once
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "geom/frame_store.h"
@@ -24,8 +26,8 @@ struct SequenceSource {
   bool operator==(const SequenceSource&) const = default;
 };
 
-/// The frames of a moving base mesh, read when they are asked for. Frames between two are on the straight way from one
-/// to the other.
+/// The frames of a moving base mesh, read when they are asked for; the last two stay, as a shutter that is open looks
+/// at them again and again. Frames between two are on the straight way from one to the other.
 class MeshSequence {
  public:
   /// Finds the frames. Throws a user error when there are none.
@@ -44,8 +46,12 @@ class MeshSequence {
   /// Throws what at() would where it can be known without reading meshes.
   void require(double frame) const;
 
-  /// Hash of the bytes that at() would show: of the frame before, where a frame is damaged and held.
+  /// Hash of the bytes that at() would show: of the frame before, where a frame is damaged and held. Where damaged ones
+  /// are held it reads the frame, unless at() has.
   uint64_t hash(double frame) const;
+
+  /// Files and folders that at() depends on, there or not. Where damaged frames are held it reads them, as hash() does.
+  std::vector<std::filesystem::path> files(double frame) const;
 
   const SequenceSource& source() const { return source_; }
 
@@ -61,9 +67,10 @@ class MeshSequence {
   std::string missing(long number) const;
   std::vector<long>::const_iterator held(long number) const;
   BaseMesh load(long number) const;
-  BaseMesh read(long number) const;
+  void take_topology_of_rest(BaseMesh& mesh, long number) const;
+  std::shared_ptr<const BaseMesh> read(long number) const;
   long shown(long number) const;
-  BaseMesh read_or_hold(long number, std::vector<std::string>* notes) const;
+  std::shared_ptr<const BaseMesh> read_or_hold(long number, std::vector<std::string>* notes) const;
   std::string range_text() const;
 
   SequenceSource source_;
@@ -71,7 +78,8 @@ class MeshSequence {
   double frames_per_number_ = 1;
   std::vector<long> numbers_;  ///< within first and last, in the order of frames
   mutable std::unique_ptr<BaseMesh> rest_;
-  mutable std::map<long, bool> readable_;  ///< numbers that hash() has tried
+  mutable std::map<long, std::string> faults_;  ///< of numbers that were read; empty: none
+  mutable std::deque<std::pair<long, std::shared_ptr<const BaseMesh>>> kept_;  ///< the last that were read
 };
 
 }  // namespace wale

@@ -7,6 +7,10 @@
 #include <cerrno>
 #include <charconv>
 #include <fstream>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string_view>
 
 #include "geom/byte_source.h"
 #include "geom/error.h"
@@ -33,29 +37,63 @@ const std::string& process_space() {
 }
 
 // ".f.SPACE.PROCESS.COUNT.tmp.exr" of f.exr: two programs, or two threads of one, may write the same name at once.
-std::string temporary_begin(const fs::path& file) {
-  return fmt::format(".{}.{}.", file.stem().string(), process_space());
+std::string temporary_name(const fs::path& file, unsigned count) {
+  return fmt::format(".{}.{}.{}.{}.tmp{}", file.stem().string(), process_space(), ::getpid(), count,
+                     file.extension().string());
 }
-std::string temporary_end(const fs::path& file) { return ".tmp" + file.extension().string(); }
+
+// A temporary file of this machine: what it was to become, and who writes it.
+struct Temporary {
+  std::string name;
+  pid_t process = 0;
+};
+std::optional<Temporary> read_temporary_name(const std::string& name) {
+  const std::string middle = "." + process_space() + ".";
+  const size_t at = name.rfind(middle);
+  if (name.empty() || name[0] != '.' || at == std::string::npos || at < 1) return {};
+  const char *from = name.data() + at + middle.size(), *to = name.data() + name.size();
+  Temporary out;
+  unsigned count = 0;
+  const auto dot = std::from_chars(from, to, out.process);
+  if (dot.ec != std::errc() || dot.ptr == to || *dot.ptr != '.' || out.process <= 0) return {};
+  const auto stop = std::from_chars(dot.ptr + 1, to, count);
+  const std::string_view end(stop.ptr, size_t(to - stop.ptr));
+  if (stop.ec != std::errc() || !end.starts_with(".tmp")) return {};
+  out.name = name.substr(1, at - 1) + std::string(end.substr(4));
+  return out;
+}
 
 bool is_alive(pid_t process) { return ::kill(process, 0) == 0 || errno != ESRCH; }
 
-void remove_left_behind(const fs::path& folder, const fs::path& file) {
-  const std::string begin = temporary_begin(file), end = temporary_end(file);
-  std::error_code failed, ignored;
-  for (fs::directory_iterator at(folder, failed), last; !failed && at != last; at.increment(failed)) {
-    const std::string name = at->path().filename().string();
-    if (name.size() <= begin.size() + end.size() || !name.starts_with(begin) || !name.ends_with(end)) continue;
-    const char *from = name.data() + begin.size(), *to = name.data() + name.size() - end.size();
-    pid_t process = 0;
-    unsigned count = 0;
-    const auto dot = std::from_chars(from, to, process);
-    if (dot.ec != std::errc() || dot.ptr == to || *dot.ptr != '.' || process <= 0) continue;
-    const auto stop = std::from_chars(dot.ptr + 1, to, count);
-    if (stop.ec != std::errc() || stop.ptr != to || is_alive(process)) continue;
-    fs::remove(at->path(), ignored);
+// What writers that were killed have left. A folder is looked through once a run: it may hold thousands of frames.
+class LeftBehind {
+ public:
+  void remove(const fs::path& folder, const fs::path& file) {
+    const std::lock_guard lock(mutex_);
+    const auto [known, is_new] = folders_.try_emplace(fs::absolute(folder).lexically_normal());
+    if (is_new) known->second = look_through(folder);
+    const auto [first, last] = known->second.equal_range(file.filename().string());
+    std::error_code ignored;
+    for (auto at = first; at != last; ++at)
+      if (!is_alive(at->second.first)) fs::remove(at->second.second, ignored);
+    known->second.erase(first, last);
   }
-}
+
+ private:
+  using Files = std::multimap<std::string, std::pair<pid_t, fs::path>>;  // by what they were to become
+
+  static Files look_through(const fs::path& folder) {
+    Files out;
+    std::error_code failed;
+    for (fs::directory_iterator at(folder, failed), last; !failed && at != last; at.increment(failed))
+      if (const auto temporary = read_temporary_name(at->path().filename().string()))
+        out.emplace(temporary->name, std::pair(temporary->process, at->path()));
+    return out;
+  }
+
+  std::mutex mutex_;
+  std::map<fs::path, Files> folders_;
+};
 
 }  // namespace
 
@@ -67,8 +105,9 @@ AtomicFile::AtomicFile(const fs::path& file) : file_(file) {
     user_error("{}: this is a folder; give the name of a file in it", file.string());
   if (!fs::is_directory(folder, error))
     user_error("{}: the folder {} does not exist; make it first", file.string(), folder.string());
-  remove_left_behind(folder, file);
-  temporary_ = folder / fmt::format("{}{}.{}{}", temporary_begin(file), ::getpid(), counter++, temporary_end(file));
+  static LeftBehind left_behind;
+  left_behind.remove(folder, file);
+  temporary_ = folder / temporary_name(file, counter++);
   if (!std::ofstream(temporary_)) user_error("{}: the folder {} cannot be written", file.string(), folder.string());
 }
 

@@ -6,8 +6,8 @@ namespace wale {
 
 /// A file that appears whole or not at all: written under a temporary name in the same folder, renamed by commit().
 /// When the object dies without commit(), nothing is left behind and an older file of that name is untouched. What a
-/// program that was killed left of the same file is removed by the next one on that machine, as long as it has not been
-/// started anew.
+/// program that was killed left of the same file is removed by the next run on that machine, as long as it has not been
+/// started anew; for that a folder is looked through once a run.
 class AtomicFile {
  public:
   /// Throws a user error when the folder does not exist or cannot be written, or `file` is a folder.

@@ -108,7 +108,8 @@ class Frames {
       frames_.push_back(std::move(frame));
     }
     for (const auto& output : frames_.front().files) require_writable(output);
-    // Each frame's scene is read and its files are hashed: of many frames that takes a while.
+    // Each frame's scene is read, and where there are pictures of it its files are hashed: of many frames that takes a
+    // while.
     Progress bar("check", args_.quiet || frames_.size() == 1);
     for (size_t i = 0; i < frames_.size(); ++i) {
       bar.update(double(i) / double(frames_.size()), fmt::format("frame {:g}", frames_[i].at));
@@ -141,11 +142,11 @@ class Frames {
     for (const auto& object : scene.objects) require(object.mesh);
     for (const auto& light : scene.lights) require(light.mesh);
     if (args_.frames.empty()) return;  // one picture, always made
-    frame.identity = identity_.of(scene, overrides(frame.at));
     size_t there = 0;
     for (const auto& file : frame.files) {
       std::error_code failed;
       if (!std::filesystem::exists(file, failed)) continue;
+      if (frame.identity.empty()) frame.identity = identity_.of(scene, overrides(frame.at));
       if (image_text(file, kFrameAttribute) == frame.identity) {
         ++there;
       } else if (!args_.redo) {
@@ -227,6 +228,8 @@ class Frames {
       show(f);
     });
     if (r.stopped && stop_requested()) return false;
+    // Only now where there was no picture to compare with: the frame's files have just been read.
+    if (!args_.frames.empty() && frame.identity.empty()) frame.identity = identity_.of(scene, overrides(frame.at));
     const auto start = Clock::now();
     write(frame, scene, options, r);
     row.write_seconds = since(start);

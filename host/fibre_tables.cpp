@@ -29,7 +29,7 @@ void FibreTables::add(const FibreRecipe& wanted, double ply_radius, Detail level
   FibreRecipe recipe = wanted;
   if (level == Detail::paper) recipe.migration_min = 1;
   const auto known = [&]() -> std::shared_ptr<const FibreDetail> {
-    for (const FibreTables* tables : {const_cast<const FibreTables*>(this), previous})
+    for (const FibreTables* tables : {&std::as_const(*this), previous})
       for (size_t i = 0; tables && i < tables->made.size(); ++i)
         if (tables->made[i].from == recipe) return tables->made[i].detail;
     return std::make_shared<FibreDetail>(recipe);

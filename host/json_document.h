@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -27,6 +28,8 @@ struct JsonNode {
   bool boolean = false;
   double number = 0;          ///< integers too
   bool between_keys = false;  ///< a number that lies between those of two key frames
+  /// Of a number from key frames: the first of its keys' numbers that is not whole, wherever the frame lies.
+  std::shared_ptr<const JsonNode> key_with_fraction{};
   std::string text;
   std::vector<JsonNode> items;
   std::vector<Member> members;

@@ -50,6 +50,20 @@ KeyWay way_of(const JsonNode& node, const std::string& path) {
   return KeyWay(found - ways.begin());
 }
 
+// A key that is no whole number is known to every number of the track, so that it can be refused at any frame.
+void tell_fractions(const std::vector<JsonNode*>& values) {
+  std::shared_ptr<const JsonNode> fraction;
+  for (const JsonNode* value : values)
+    if (!fraction && value->is_number() && value->number != std::floor(value->number))
+      fraction = std::make_shared<const JsonNode>(*value);
+  for (JsonNode* value : values) value->key_with_fraction = fraction;
+  for (size_t i = 0; i < values[0]->items.size(); ++i) {
+    std::vector<JsonNode*> items;
+    for (JsonNode* value : values) items.push_back(&value->items[i]);
+    tell_fractions(items);
+  }
+}
+
 // Slope of the cubic at a key: a weighted harmonic mean of the slopes beside it, 0 at an extremum and at both ends.
 double slope(double h0, double d0, double h1, double d1) {
   if (!(d0 * d1 > 0)) return 0;
@@ -83,6 +97,9 @@ KeyTrack::KeyTrack(const JsonNode& list, const std::string& path, KeyWay otherwi
                           key.value.describe(), frame, keys_.back().value.describe(), keys_.back().frame));
     keys_.push_back(std::move(key));
   }
+  std::vector<JsonNode*> values;
+  for (Key& key : keys_) values.push_back(&key.value);
+  tell_fractions(values);
 }
 
 JsonNode KeyTrack::at(double frame) const {

@@ -16,6 +16,11 @@ std::shared_ptr<const MeshSequence> open_sequence(const SequenceSource& source, 
 
 }  // namespace
 
+std::vector<std::filesystem::path> files_of(const MeshSource& s, const Loaders& loaders) {
+  if (s.sequence) return open_sequence(*s.sequence, loaders)->files(s.frame);
+  return s.file.empty() ? std::vector<std::filesystem::path>{} : std::vector{s.file};
+}
+
 BaseMesh load_rest_mesh(const MeshSource& s, const Loaders& loaders) {
   return s.sequence ? open_sequence(*s.sequence, loaders)->rest() : load_mesh(s, loaders);
 }

@@ -43,6 +43,18 @@ CLI::Validator not_empty(const std::string& example) {
       "TEXT");
 }
 
+// Of every option that takes a value, after what it asks for itself.
+void refuse_empty_values(CLI::App& app) {
+  const CLI::Validator filled(
+      [](const std::string& text) {
+        return text.empty() ? std::string("the value is empty; leave the option out, or give one") : std::string();
+      },
+      "");
+  for (CLI::App* command : app.get_subcommands(nullptr))
+    for (CLI::Option* option : command->get_options())
+      if (!option->get_lnames().empty() && option->get_items_expected_max() > 0) option->check(filled);
+}
+
 void add_scene_options(CLI::App& command, SceneArgs& args) {
   command.add_option("SCENE", args.scene, "scene file")->required();
   command.add_option("--preset", args.preset, "accuracy: " + wale::preset_names() + "; goes before --set")
@@ -288,6 +300,7 @@ int run(int argc, char** argv) {
   c = app.add_subcommand("schema", "print the JSON Schema of scene files");
   c->callback([&] { status = wale::run_schema(); });
 
+  refuse_empty_values(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {

@@ -77,6 +77,7 @@ class Checker {
 
   void check_number(const SchemaType& type, JsonNode& node, const std::string& path, bool whole) const {
     if (!node.is_number()) wrong_type(node, whole ? "a whole number" : "a number", path);
+    if (whole && node.key_with_fraction) wrong_type(*node.key_with_fraction, "a whole number", path);
     if (whole && node.between_keys) node.number = std::round(node.number);
     if (whole && node.number != std::floor(node.number)) wrong_type(node, "a whole number", path);
     if (!type.range.contains(node.number))
@@ -92,6 +93,7 @@ class Checker {
   }
 
   static void check_choice(const SchemaType& type, const JsonNode& node, const std::string& path) {
+    if (node.key_with_fraction) return check_choice(type, *node.key_with_fraction, path);
     const bool known =
         node.is_number() && std::find(type.integers.begin(), type.integers.end(), node.number) != type.integers.end();
     if (!known)
@@ -103,7 +105,8 @@ class Checker {
     need(node, Node::string, "a file name", path);
     const auto full = std::filesystem::absolute(context_.folder / node.text).lexically_normal();
     std::error_code ignored;
-    if (context_.fence && !context_.fence->admits(full)) fail(node.place, path, "{}", context_.fence->refusal(node.text));
+    if (context_.fence && !context_.fence->admits(full))
+      fail(node.place, path, "{}", context_.fence->refusal(node.text));
     if (node.text.empty() || !std::filesystem::exists(full, ignored))
       fail(node.place, path, "no file \"{}\" (looked for {}); {}", node.text, full.string(), beside(full));
     if (!std::filesystem::is_regular_file(full, ignored)) fail(node.place, path, "{} is not a file", full.string());

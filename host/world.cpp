@@ -34,7 +34,7 @@ class Builder {
       add_objects();
       choose_origin();
       for (const Fabric& fabric : world_.fabrics) refuse_if_rounded(fabric, world_.origin);
-      add_lights(world_, surfaces_, scene_, loaders_, bounds_.radius());
+      add_lights(world_, surfaces_, scene_, loaders_, bounds_.radius(), kept_before());
       surfaces_.place(world_);
     });
     world_.camera = camera();
@@ -135,6 +135,8 @@ class Builder {
     if (!options_.editable) fabric.place = {};
   }
 
+  const KeptMeshes* kept_before() const { return previous_ ? &previous_->kept_meshes : nullptr; }
+
   void add_objects() {
     for (const auto& object : scene_.objects) {
       const int material = SurfaceSet::add_material(world_, scene_.materials.at(size_t(object.material)).surface);
@@ -155,7 +157,7 @@ class Builder {
         centre += up * (object.height - glm::dot(centre, up));
         surfaces_.add_quad(centre, u * object.extent, v * object.extent, material);
       } else {
-        BaseMesh mesh = load_mesh(object.mesh, loaders_, &world_.notes);
+        BaseMesh mesh = *world_.kept_meshes.load(object.mesh, loaders_, kept_before(), world_.notes);
         transform_mesh(mesh, object.transform);
         refuse_if_out_of_reach(mesh, object.name);
         bounds_.add(mesh);

@@ -9,6 +9,7 @@
 #include "geom/fabric.h"
 #include "host/fibre_tables.h"
 #include "host/image.h"
+#include "host/kept_meshes.h"
 #include "host/knit_order.h"
 #include "host/leaf_form.h"
 #include "host/light_tables.h"
@@ -68,6 +69,7 @@ struct World {
   WEnvironment environment{};
   EnvironmentTables environment_tables;  ///< empty for a constant environment
   WCamera camera{};
+  KeptMeshes kept_meshes;                                 ///< of props and lights
   std::vector<std::string> notes;                         ///< what was mended in the input, one line each
   std::vector<std::string> light_names;                   ///< per light, for `wale plan`
   std::vector<std::string> triangle_names, sphere_names;  ///< of objects and lights of that shape
@@ -100,6 +102,9 @@ void give_back_fabrics(World& from, World& previous);
 
 /// The mesh that a scene names, generated or read, before its transform. Frames that are held add a line to `notes`.
 BaseMesh load_mesh(const MeshSource& source, const Loaders& loaders, std::vector<std::string>* notes = nullptr);
+
+/// Files and folders that it depends on.
+std::vector<std::filesystem::path> files_of(const MeshSource& source, const Loaders& loaders);
 
 /// The same at rest, if it is one of a sequence.
 BaseMesh load_rest_mesh(const MeshSource& source, const Loaders& loaders);

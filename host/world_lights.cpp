@@ -16,8 +16,14 @@ std::array<float, 3> rgb3(const Rgb& c) { return {float(c[0]), float(c[1]), floa
 
 class Lights {
  public:
-  Lights(World& world, SurfaceSet& surfaces, const Scene& scene, const Loaders& loaders, double radius)
-      : world_(world), surfaces_(surfaces), scene_(scene), loaders_(loaders), radius_(radius) {}
+  Lights(World& world, SurfaceSet& surfaces, const Scene& scene, const Loaders& loaders, double radius,
+         const KeptMeshes* kept_before)
+      : world_(world),
+        surfaces_(surfaces),
+        scene_(scene),
+        loaders_(loaders),
+        radius_(radius),
+        kept_before_(kept_before) {}
 
   void add() {
     LightTableBuilder tables;
@@ -88,7 +94,7 @@ class Lights {
   }
 
   void add_mesh_light(const LightScene& light, LightTableBuilder& tables) {
-    BaseMesh mesh = load_mesh(light.mesh, loaders_, &world_.notes);
+    BaseMesh mesh = *world_.kept_meshes.load(light.mesh, loaders_, kept_before_, world_.notes);
     transform_mesh(mesh, light.transform);
     const int material = SurfaceSet::add_emitter(world_, light.radiance, false);
     const size_t first = surfaces_.triangles().size();
@@ -147,12 +153,14 @@ class Lights {
   const Scene& scene_;
   const Loaders& loaders_;
   double radius_;
+  const KeptMeshes* kept_before_;
 };
 
 }  // namespace
 
-void add_lights(World& world, SurfaceSet& surfaces, const Scene& scene, const Loaders& loaders, double radius) {
-  Lights(world, surfaces, scene, loaders, radius).add();
+void add_lights(World& world, SurfaceSet& surfaces, const Scene& scene, const Loaders& loaders, double radius,
+                const KeptMeshes* kept_before) {
+  Lights(world, surfaces, scene, loaders, radius, kept_before).add();
 }
 
 }  // namespace wale

@@ -94,7 +94,6 @@ void EditedScene::take(Edits edits) {
     JsonNode document = document_with({});
     scene_ = fenced_scene(document, file_, fence_);
     document_ = std::move(document);
-    ++version_;
   } catch (...) {
     edits_ = std::move(before);
     throw;
@@ -110,7 +109,7 @@ void EditedScene::edit(const std::vector<std::string>& set, const std::string& g
   }
   if (next.size() > kMostEdits)
     user_error("more than {} values are edited; save the scene and open it anew", kMostEdits);
-  Edits before = edits_;
+  auto before = std::make_shared<const Edits>(edits_);
   take(std::move(next));
   if (gesture.empty() || gesture != gesture_) past_.push_back(std::move(before));
   if (past_.size() > kMostSteps) past_.erase(past_.begin());
@@ -120,8 +119,8 @@ void EditedScene::edit(const std::vector<std::string>& set, const std::string& g
 
 bool EditedScene::undo() {
   if (past_.empty()) return false;
-  Edits now = edits_;
-  take(past_.back());
+  auto now = std::make_shared<const Edits>(edits_);
+  take(*past_.back());
   past_.pop_back();
   future_.push_back(std::move(now));
   gesture_.clear();
@@ -130,8 +129,8 @@ bool EditedScene::undo() {
 
 bool EditedScene::redo() {
   if (future_.empty()) return false;
-  Edits now = edits_;
-  take(future_.back());
+  auto now = std::make_shared<const Edits>(edits_);
+  take(*future_.back());
   future_.pop_back();
   past_.push_back(std::move(now));
   gesture_.clear();
@@ -140,22 +139,10 @@ bool EditedScene::redo() {
 
 bool EditedScene::reset() {
   if (edits_.empty()) return false;
-  Edits now = edits_;
+  auto now = std::make_shared<const Edits>(edits_);
   take({});
   past_.push_back(std::move(now));
   future_.clear();
-  gesture_.clear();
-  return true;
-}
-
-void EditedScene::confirm(uint64_t version, std::vector<std::string> edits) {
-  if (version <= version_) good_ = std::move(edits);
-}
-
-bool EditedScene::withdraw(uint64_t version) {
-  if (version != version_ || edits_ == good_) return false;
-  take(good_);
-  if (!past_.empty()) past_.pop_back();
   gesture_.clear();
   return true;
 }

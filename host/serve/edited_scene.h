@@ -1,6 +1,6 @@
 #pragma once
-#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,7 +12,7 @@ namespace wale {
 
 /// A scene file and the edits made to it, each a list of overrides as `--set` takes them. Every version is checked by
 /// the scene's schema before it is taken; files outside of the scene's folder, but for those it named when it was
-/// opened, are refused. For one thread at a time.
+/// opened, are refused. Copies are cheap; one is for one thread at a time.
 class EditedScene {
  public:
   /// Throws the user errors of read_scene(). `overrides`: of the command line, below all edits.
@@ -23,7 +23,6 @@ class EditedScene {
   /// The document with its overrides, as it was written: nothing filled in, lengths in the file's units.
   const JsonNode& document() const { return document_; }
   double metres_per_unit() const { return metres_per_unit_; }
-  uint64_t version() const { return version_; }
   /// What was edited, one override a path, in the order in which they must be applied.
   const std::vector<std::string>& edits() const { return edits_; }
 
@@ -36,12 +35,6 @@ class EditedScene {
   bool reset();
   bool can_undo() const { return !past_.empty(); }
   bool can_redo() const { return !future_.empty(); }
-
-  /// This version could be knitted and rendered: withdraw() goes back to it.
-  void confirm(uint64_t version, std::vector<std::string> edits);
-  /// It could not: where it still is the newest, the edits are those that were confirmed last. False, and nothing done,
-  /// where they are that already.
-  bool withdraw(uint64_t version);
 
   /// The scene with more overrides, which are not kept.
   Scene scene_with(const std::vector<std::string>& more) const;
@@ -60,13 +53,12 @@ class EditedScene {
   void take(Edits edits);
 
   std::filesystem::path file_;
-  Edits overrides_, groundwork_, edits_, good_;
+  Edits overrides_, groundwork_, edits_;
   JsonNode original_, document_;
   FileFence fence_;
   Scene opened_, scene_;
   double metres_per_unit_ = 1;
-  uint64_t version_ = 1;
-  std::vector<Edits> past_, future_;
+  std::vector<std::shared_ptr<const Edits>> past_, future_;
   std::string gesture_;
 };
 

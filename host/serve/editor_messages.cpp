@@ -20,18 +20,19 @@ std::string json_list(const Texts& texts) {
 
 }  // namespace
 
-std::vector<EditorView> editor_views(const EditedScene& edited, const EditorSettings& settings,
-                                     const CameraScene& camera) {
+std::vector<EditorView> editor_views(const EditorState& state, const CameraScene& camera) {
   std::vector<EditorView> views;
-  const std::string& lit = settings.lit;
+  const EditedScene& edited = state.scene;
+  const std::string& lit = state.settings.lit;
   if (lit == "scene") views.push_back({"as in the scene", {}});
   if (lit == "front" || lit == "both") views.push_back({"from the front", light_sides(edited, camera, LitSide::front)});
   if (lit == "back" || lit == "both") views.push_back({"from behind", light_sides(edited, camera, LitSide::back)});
   return views;
 }
 
-std::string state_message(uint64_t revision, const EditedScene& edited, const EditorSettings& settings,
-                          const std::vector<EditorView>& views, const std::optional<RefusedEdit>& refused) {
+std::string state_message(const TriedEdits& edits, const std::vector<EditorView>& views) {
+  const auto& [edited, settings] = edits.newest();
+  const std::optional<RefusedEdit>& refused = edits.refusal();
   Texts commands, names;
   const std::string goal = fmt::format(" --error {:g}", settings.goal);
   for (const EditorView& view : views) {
@@ -41,7 +42,7 @@ std::string state_message(uint64_t revision, const EditedScene& edited, const Ed
   return fmt::format(
       "{{\"revision\": {}, \"scene\": {}, \"views\": {}, \"commands\": {}, \"can_undo\": {}, \"can_redo\": {}, "
       "\"edits\": {},\n \"fault\": {},\n \"controls\": {}}}\n",
-      revision, json_string(std::filesystem::path(edited.scene().file).filename().string()), json_list(names),
+      edits.revision(), json_string(std::filesystem::path(edited.scene().file).filename().string()), json_list(names),
       json_list(commands), edited.can_undo(), edited.can_redo(), json_list(edited.edits()),
       refused
           ? fmt::format("{{\"control\": {}, \"line\": {}}}", json_string(refused->control), json_string(refused->line))

@@ -1,17 +1,11 @@
 #pragma once
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "host/serve/controls.h"
 #include "host/serve/live_views.h"
+#include "host/serve/tried_edits.h"
 
 namespace wale {
-
-/// An edit that passed the schema and could not be made.
-struct RefusedEdit {
-  std::string control, line;
-};
 
 /// One picture on the page: the edited scene, with more overrides that are not kept.
 struct EditorView {
@@ -20,14 +14,13 @@ struct EditorView {
 };
 
 /// The views that the settings ask for, seen by this camera.
-std::vector<EditorView> editor_views(const EditedScene& edited, const EditorSettings& settings,
-                                     const CameraScene& camera);
+std::vector<EditorView> editor_views(const EditorState& state, const CameraScene& camera);
 
 /// The message `state`: what is edited, as JSON.
-std::string state_message(uint64_t revision, const EditedScene& edited, const EditorSettings& settings,
-                          const std::vector<EditorView>& views, const std::optional<RefusedEdit>& refused);
+std::string state_message(const TriedEdits& edits, const std::vector<EditorView>& views);
 
-/// The message `cost`: how far the pictures are and what it took. `status`: starting, changing, rendering or done.
+/// The message `cost`: how far the pictures are and what it took. `status`: starting, changing, rendering, done, or
+/// stopped where no version can be shown until the next edit.
 std::string cost_message(const std::string& status, uint64_t revision, double goal, const LiveViews& views,
                          const Redone& redone, size_t viewers);
 

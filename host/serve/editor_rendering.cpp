@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "geom/error.h"
@@ -45,12 +46,15 @@ CameraScene camera_of(const World& world) {
 
 }  // namespace
 
-EditorSession::Version EditorSession::newest() {
-  const std::lock_guard lock(mutex_);
-  Version version{revision_, edited_.version(), edited_.edits(), settings_, control_};
+EditorSession::Version EditorSession::next_version() {
+  std::unique_lock lock(mutex_);
+  Version version{edits_.next()};
+  const CameraScene seen_by = camera(version.trial.state);
+  lock.unlock();
+  const EditedScene& edited = version.trial.state.scene;
   try {
-    for (const EditorView& view : editor_views(edited_, settings_, camera())) {
-      version.scenes.push_back(view.more.empty() ? edited_.scene() : edited_.scene_with(view.more));
+    for (const EditorView& view : editor_views(version.trial.state, seen_by)) {
+      version.scenes.push_back(view.more.empty() ? edited.scene() : edited.scene_with(view.more));
       fit(version.scenes.back().film, options_.width, options_.height);
     }
   } catch (const Error& error) {  // a file that it names has gone
@@ -66,7 +70,7 @@ void EditorSession::publish_picture(size_t view, const Version& version, Progres
   const std::string jpeg = display_jpeg(shown->image, shown->exposure, shown->view, kJpegQuality);
   const RenderState& s = render.state();
   feed_.publish(fmt::format("picture.{}", view), "image/jpeg", jpeg,
-                {{"X-Wale-Revision", std::to_string(version.revision)},
+                {{"X-Wale-Revision", std::to_string(version.trial.revision)},
                  {"X-Wale-Size", fmt::format("{}x{}", film.width, film.height)},
                  {"X-Wale-Shrink", std::to_string(s.shrink)},
                  {"X-Wale-Samples", std::to_string(s.samples)}});
@@ -75,114 +79,110 @@ void EditorSession::publish_picture(size_t view, const Version& version, Progres
   shown_[view] = std::move(shown);
 }
 
-// The version shown before it is the newest again, where nobody has edited on. False where this is that version: its
-// files have changed, and nothing can be shown until the next edit.
-bool EditorSession::refuse(const Version& version, const std::string& line) {
-  bool another = true;
+void EditorSession::refuse(const Version& version, const std::string& line) {
   {
     const std::lock_guard lock(mutex_);
-    if (revision_ == version.revision) {
-      another = std::exchange(settings_, good_settings_) != good_settings_;
-      try {
-        another |= edited_.withdraw(version.scene);
-      } catch (const Error& error) {  // what was shown cannot be read any more
-        if (error.fault() != wale::Fault::user) throw;
-      }
-      revision_ += another;
-      fault_ = RefusedEdit{version.control, line};
-      dirty_ = true;
-    }
+    edits_.refused(version.trial, line);
+    dirty_ = true;
   }
   publish_state(true);
-  return another;
 }
 
 // It is what the views show.
 void EditorSession::confirm(const Version& version) {
-  const std::lock_guard lock(mutex_);
-  for (size_t v = version.scenes.size(); v < shown_.size(); ++v) feed_.forget(fmt::format("picture.{}", v));
-  shown_.resize(version.scenes.size());
-  edited_.confirm(version.scene, version.edits);
-  good_settings_ = version.settings;
+  {
+    const std::lock_guard lock(mutex_);
+    for (size_t v = version.scenes.size(); v < shown_.size(); ++v) feed_.forget(fmt::format("picture.{}", v));
+    shown_.resize(version.scenes.size());
+    const uint64_t before = edits_.revision();
+    const bool told = edits_.refusal().has_value();
+    edits_.shown(version.trial);
+    dirty_ = dirty_ || edits_.revision() != before || edits_.refusal().has_value() != told;
+  }
+  publish_state(false);
 }
 
-bool EditorSession::newer_than(const Version& version) const {
+bool EditorSession::another_pending() const {
   const std::lock_guard lock(mutex_);
-  return stop_ || revision_ != version.revision;
+  return edits_.pending();
 }
 
 void EditorSession::run(std::span<const Device> device, const Loaders& loaders,
                         const std::function<bool()>& stop_asked) {
   LiveViews views(device, loaders, options_.kernel_dir);
-  Version version;     // revision 0: none yet
-  uint64_t shown = 0;  // revision that the views are of; 0 = none, as files that they need have changed
+  std::optional<Version> version;  // that the views are of, or were until files that they need changed
+  bool visible = false;
   Redone redone;
   uint64_t told = 0;  // samples that were not finite
   const auto publish_cost = [&](const std::string& status, const Version& of) {
-    feed_.publish("cost", "application/json",
-                  cost_message(status, of.revision, of.settings.goal, views, redone, feed_.viewers()));
+    feed_.publish(
+        "cost", "application/json",
+        cost_message(status, of.trial.revision, of.trial.state.settings.goal, views, redone, feed_.viewers()));
   };
   const auto wait = [&] {
     std::unique_lock lock(mutex_);
-    if (revision_ == version.revision && !stop_) wake_.wait_for(lock, kIdle);
+    if (!edits_.pending() && !stop_) wake_.wait_for(lock, kIdle);
   };
+  // What is begun is seen once, in all views: while a control is dragged, the next version is always there already.
+  const auto next_wanted = [&] { return (!visible || views.all_seen()) && another_pending(); };
   while (!stop_asked() && !stopped()) {
     publish_state(false);
-    if (newer_than(version)) {
-      Version next = newest();
-      const bool first = version.revision == 0;
-      if (shown == version.revision && next.fault.empty() && traced(next.scenes) == traced(version.scenes)) {
+    if (next_wanted()) {
+      Version next = next_version();
+      if (visible && next.fault.empty() && traced(next.scenes) == traced(version->scenes)) {
         version = std::move(next);
-        shown = version.revision;
-        confirm(version);
+        confirm(*version);
         for (size_t v = 0; v < views.count(); ++v)
-          if (views.render(v).state().shrink > 0) publish_picture(v, version, views.render(v));
-        publish_cost("rendering", version);
+          if (views.render(v).state().shrink > 0) publish_picture(v, *version, views.render(v));
+        publish_cost("rendering", *version);
         continue;
       }
-      publish_cost(first ? "starting" : "changing", next);
+      publish_cost(version ? "changing" : "starting", next);
       try {
         if (!next.fault.empty()) user_error("{}", next.fault);
         redone = views.show(next.scenes);
       } catch (const Error& error) {
-        if (error.fault() != wale::Fault::user || first) throw;
-        version.revision = next.revision;  // refuse() makes another one when nobody else did
-        shown = 0;
+        if (error.fault() != wale::Fault::user || (!version && next.trial.revision == 1)) throw;
+        visible = false;
         refuse(next, error.what());
         continue;
       }
+      const bool first = !version;
       version = std::move(next);
-      shown = version.revision;
+      visible = true;
       if (first) {
         views.limit_segments(std::max(kMostSegments, 2.0 * double(views.segments())));
         const std::lock_guard lock(mutex_);
         framed_ = camera_of(views.world());
       }
-      confirm(version);
+      confirm(*version);
+      continue;
     }
-    if (shown != version.revision) {
+    if (!visible) {
+      publish_cost("stopped", *version);
       wait();
       continue;
     }
-    const auto view = views.next(version.settings.goal);
+    const double goal = version->trial.state.settings.goal;
+    const auto view = views.next(goal);
     if (!view) {
-      publish_cost("done", version);
+      publish_cost("done", *version);
       wait();
       continue;
     }
     bool due = false;
     try {
-      while (!due && !newer_than(version) && !stop_asked()) due = views.step(*view);
+      while (!due && !next_wanted() && !stop_asked() && !stopped()) due = views.step(*view);
     } catch (const Error& error) {  // two views take turns on the device, and files are read anew
       if (error.fault() != wale::Fault::user) throw;
-      shown = 0;
-      refuse(version, error.what());
+      visible = false;
+      refuse(*version, error.what());
       continue;
     }
     if (!due) continue;
-    publish_picture(*view, version, views.render(*view));
-    publish_cost("rendering", version);
-    if (const uint64_t now = views.progress(version.settings.goal).not_finite_since_start; now > told) {
+    publish_picture(*view, *version, views.render(*view));
+    publish_cost("rendering", *version);
+    if (const uint64_t now = views.progress(goal).not_finite_since_start; now > told) {
       if (told == 0 || now >= 2 * told) {  // a line each time that it has doubled
         fmt::print(stderr, "wale: render: {} samples so far were not finite; the pictures are without them\n", now);
         told = now;
@@ -190,7 +190,7 @@ void EditorSession::run(std::span<const Device> device, const Loaders& loaders,
     }
   }
   stop();
-  if (const uint64_t count = views.progress(version.settings.goal).not_finite_since_start)
+  if (const uint64_t count = views.progress(1).not_finite_since_start)
     bug("render: {} samples were not finite; the pictures were shown without them", count);
 }
 

@@ -19,10 +19,24 @@ using Texts = std::vector<std::string>;
 
 constexpr std::chrono::milliseconds kStateInterval{40};
 
+// Edits of one gesture that set the same keys are one stroke: the newest stands for them all.
+EditorChange scene_change(const Texts& set, const std::string& gesture, const std::string& control) {
+  EditorChange change;
+  change.control = control;
+  if (!set.empty())
+    change.make = [=](EditorState& state) { state.scene.edit(set, gesture); };
+  else
+    change.make = [](EditorState&) {};
+  if (gesture.empty()) return change;
+  change.stroke = gesture;
+  for (const std::string& one : set) change.stroke.append(1, '\n').append(one, 0, one.find('='));
+  return change;
+}
+
 }  // namespace
 
 EditorSession::EditorSession(EditedScene scene, const EditorOptions& options)
-    : options_(options), feed_(options.viewers), edited_(std::move(scene)) {}
+    : options_(options), feed_(options.viewers), edits_({std::move(scene), {}}) {}
 
 HttpReply EditorSession::handle(const EditorRequest& request) {
   switch (request.kind) {
@@ -36,17 +50,17 @@ HttpReply EditorSession::handle(const EditorRequest& request) {
       return reply;
     }
     case Kind::edit:
-      return changed([&] { edited_.edit(request.set, request.gesture); }, request.control);
+      return changed([&] { return scene_change(request.set, request.gesture, request.control); });
     case Kind::control:
-      return changed([&] { set_control(request); }, request.control);
+      return changed([&] { return control_change(request); });
     case Kind::camera:
-      return changed([&] { move_camera(request); }, "camera");
+      return changed([&] { return camera_change(request); });
     case Kind::undo:
-      return changed([&] { edited_.undo(); }, "");
+      return changed([] { return EditorChange{[](EditorState& state) { state.scene.undo(); }}; });
     case Kind::redo:
-      return changed([&] { edited_.redo(); }, "");
+      return changed([] { return EditorChange{[](EditorState& state) { state.scene.redo(); }}; });
     case Kind::reset:
-      return changed([&] { edited_.reset(); }, "");
+      return changed([] { return EditorChange{[](EditorState& state) { state.scene.reset(); }}; });
     case Kind::save:
       return save(request);
     case Kind::picture:
@@ -63,17 +77,14 @@ HttpReply EditorSession::handle(const EditorRequest& request) {
   return refusal(404, "no such path");
 }
 
-HttpReply EditorSession::changed(const std::function<void()>& change, const std::string& control) {
+HttpReply EditorSession::changed(const std::function<EditorChange()>& change) {
   HttpReply reply;
   {
     const std::lock_guard lock(mutex_);
     try {
-      change();
-      ++revision_;
-      control_ = control;
-      fault_.reset();
+      edits_.change(change());
       dirty_ = true;
-      reply.body = fmt::format("{{\"revision\": {}}}\n", revision_);
+      reply.body = fmt::format("{{\"revision\": {}}}\n", edits_.revision());
     } catch (const Error& error) {
       reply = refusal(error.fault() == Fault::user ? 400 : 500, error.what());
     }
@@ -83,36 +94,42 @@ HttpReply EditorSession::changed(const std::function<void()>& change, const std:
   return reply;
 }
 
-void EditorSession::set_control(const EditorRequest& request) {
-  const std::vector<Control> controls = controls_of(edited_, settings_);
+EditorChange EditorSession::control_change(const EditorRequest& request) const {
+  const EditorState& now = edits_.newest();
+  const std::vector<Control> controls = controls_of(now.scene, now.settings);
   const auto found =
       std::find_if(controls.begin(), controls.end(), [&](const Control& c) { return c.id == request.control; });
   if (found == controls.end()) user_error("\"{}\": there is no such control", one_line(request.control));
-  if (!found->set) return set_setting(settings_, *found, request.value);
-  if (const Texts set = overrides_of(*found, request.value); !set.empty()) edited_.edit(set, request.gesture);
+  if (!found->set)
+    return {
+        [control = *found, value = request.value](EditorState& state) { set_setting(state.settings, control, value); },
+        request.control};
+  return scene_change(overrides_of(*found, request.value), request.gesture, request.control);
 }
 
-CameraScene EditorSession::camera() const { return edited_.scene().camera_given ? edited_.scene().camera : framed_; }
+CameraScene EditorSession::camera(const EditorState& state) const {
+  return state.scene.scene().camera_given ? state.scene.scene().camera : framed_;
+}
 
-void EditorSession::move_camera(const EditorRequest& r) {
-  const CameraScene now = camera();
-  const CameraScene next = moved_camera(now, {r.orbit[0], r.orbit[1], r.pan[0], r.pan[1], r.zoom});
-  const double unit = edited_.metres_per_unit();
+EditorChange EditorSession::camera_change(const EditorRequest& r) const {
+  const EditedScene& edited = edits_.newest().scene;
+  const CameraScene next = moved_camera(camera(edits_.newest()), {r.orbit[0], r.orbit[1], r.pan[0], r.pan[1], r.zoom});
+  const double unit = edited.metres_per_unit();
   const auto point = [&](const dvec3& p) { return point_text(p, unit); };
   Texts set;
-  if (!edited_.scene().camera_given)
+  if (!edited.scene().camera_given)
     set.push_back(fmt::format("camera={{\"position\": {}, \"look_at\": {}, \"up\": [0,1,0], \"fov\": {}}}",
                               point(next.position), point(next.look_at), plain_number(next.fov * 57.29577951308232)));
   else
     set = {"camera.position=" + point(next.position), "camera.look_at=" + point(next.look_at)};
   if (next.orthographic) set.push_back("camera.height=" + plain_number(next.height / unit));
-  edited_.edit(set, r.gesture);
+  return scene_change(set, r.gesture, "camera");
 }
 
 HttpReply EditorSession::save(const EditorRequest& request) {
   const std::lock_guard lock(mutex_);
   try {
-    const auto file = edited_.save(request.file, request.replace);
+    const auto file = edits_.newest().scene.save(request.file, request.replace);
     if (file.empty())
       return refusal(409, fmt::format("{} exists; save under another name, or replace it", request.file));
     HttpReply reply;
@@ -138,7 +155,7 @@ HttpReply EditorSession::picture(int view) {
 }
 
 std::string EditorSession::state_json() const {
-  return state_message(revision_, edited_, settings_, editor_views(edited_, settings_, camera()), fault_);
+  return state_message(edits_, editor_views(edits_.newest(), camera(edits_.newest())));
 }
 
 // Not for each of many edits that come at once.

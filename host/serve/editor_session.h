@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <functional>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +20,7 @@ struct EditorOptions {
 
 /// A scene that is edited and rendered. Requests come from any thread and are answered at once: they change the
 /// document and are checked by the schema. The thread of run() owns the device and renders the newest version: versions
-/// that come faster than they can be shown are skipped.
+/// that come faster than they can be shown are skipped. An edit that cannot be shown is taken back.
 class EditorSession {
  public:
   EditorSession(EditedScene scene, const EditorOptions& options);
@@ -40,39 +39,32 @@ class EditorSession {
  private:
   /// A version as run() renders it.
   struct Version {
-    uint64_t revision = 0, scene = 0;
-    std::vector<std::string> edits;
-    EditorSettings settings{};
-    std::string control{};        ///< that asked for it last
+    TriedEdits::Trial trial;
     std::vector<Scene> scenes{};  ///< one a view
     std::string fault{};          ///< why there are none
   };
 
-  HttpReply changed(const std::function<void()>& change, const std::string& control);
-  void set_control(const EditorRequest& request);
-  void move_camera(const EditorRequest& request);
-  CameraScene camera() const;
+  HttpReply changed(const std::function<EditorChange()>& change);
+  EditorChange control_change(const EditorRequest& request) const;
+  EditorChange camera_change(const EditorRequest& request) const;
+  CameraScene camera(const EditorState& state) const;
   HttpReply save(const EditorRequest& request);
   HttpReply picture(int view);
-  Version newest();
-  bool newer_than(const Version& version) const;
+  Version next_version();
+  bool another_pending() const;
   std::string state_json() const;
   void publish_state(bool now);
   void publish_picture(size_t view, const Version& version, ProgressiveRender& render);
   void confirm(const Version& version);
-  bool refuse(const Version& version, const std::string& line);
+  void refuse(const Version& version, const std::string& line);
 
   EditorOptions options_;
   ViewerFeed feed_;
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  EditedScene edited_;
-  EditorSettings settings_, good_settings_;  ///< the latter of the version that was shown last
-  uint64_t revision_ = 1;
-  std::string control_;               ///< that asked last
-  std::optional<RefusedEdit> fault_;  ///< of the last version that could not be made
-  CameraScene framed_;                ///< where the scene has no camera: how it was framed
+  TriedEdits edits_;
+  CameraScene framed_;  ///< where the scene has no camera: how it was framed
   bool stop_ = false, dirty_ = true;
   std::chrono::steady_clock::time_point last_state_{};
   struct Shown {

@@ -44,6 +44,10 @@ Redone LiveViews::show(const std::vector<Scene>& scenes) {
   return redone;
 }
 
+bool LiveViews::all_seen() const {
+  return std::all_of(renders_.begin(), renders_.end(), [](const auto& render) { return render->state().shrink > 0; });
+}
+
 size_t LiveViews::segments() const {
   size_t sum = 0;
   for (const Fabric& fabric : live_.world().fabrics) sum += fabric.report.segments;

@@ -35,6 +35,8 @@ class LiveViews {
   void limit_segments(double most) { live_.limit_segments(most); }
 
   size_t count() const { return renders_.size(); }
+  /// Each has a picture of this version, be it of few pixels.
+  bool all_seen() const;
   ProgressiveRender& render(size_t view) { return *renders_[view]; }
   const World& world() const { return live_.world(); }
   size_t segments() const;

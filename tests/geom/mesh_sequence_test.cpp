@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <cstring>
+#include <map>
+#include <set>
 
 #include "geom/base_mesh_generators.h"
 #include "tests/geom/sequence_fixtures.h"
@@ -57,6 +59,48 @@ TEST_F(Sequences, NumberedFilesAreFoundWhateverTheirStep) {
   EXPECT_NEAR(s.at(0.25).position[0].z, 10.5, 1e-12);
   source.first = 16, source.step = -2;
   EXPECT_EQ(open(source).at(1).position[0].z, 14);
+}
+
+// A shutter looks at the same two again and again, and what a frame is called hashes the bytes that were read.
+TEST_F(Sequences, EveryFileIsReadOnce) {
+  for (int n = 0; n < 6; ++n) write(fmt::format("c_{:02}.obj", n).c_str(), lifted(n));
+  folder_.write("c_03.obj", "no mesh");
+  for (const bool changing : {false, true}) {
+    SequenceSource source = numbered();
+    source.hold = true;
+    source.changing = changing;
+    std::map<std::string, int> read;
+    const MeshSequence s(source, [&](const auto& file) {
+      ++read[file.filename().string()];
+      return read_mesh(file);
+    });
+    for (int frame = 0; frame < 5; ++frame) {
+      for (int k = 0; k < 4; ++k) s.at(frame + 0.25 * k);
+      s.hash(frame);
+      s.hash(frame + 0.5);
+    }
+    EXPECT_EQ(read.size(), changing ? 5u : 6u);
+    for (const auto& [file, times] : read) EXPECT_EQ(times, 1) << file << changing;
+  }
+}
+
+TEST_F(Sequences, TheFilesOfAFrameAreNamed) {
+  for (int n = 0; n < 6; ++n) write(fmt::format("c_{:02}.obj", n).c_str(), lifted(n));
+  folder_.write("c_03.obj", "no mesh");
+  SequenceSource source = numbered();
+  source.rest = 5;
+  source.hold = true;
+  const auto files = [&](double frame) {
+    std::set<std::string> names;
+    for (const auto& file : open(source).files(frame)) names.insert(without_folder(file.string() + "/"));
+    return names;
+  };
+  using Names = std::set<std::string>;
+  EXPECT_EQ(files(1.5), (Names{"c_01.obj/", "c_02.obj/", "c_03.obj/", "c_05.obj/"})) << "one more than it is between";
+  EXPECT_EQ(files(3), (Names{"c_02.obj/", "c_03.obj/", "c_04.obj/", "c_05.obj/"})) << "what is held instead";
+  EXPECT_EQ(files(8), (Names{"", "c_05.obj/", "c_08.obj/", "c_09.obj/"})) << "any that comes up in the folder";
+  source.frames = folder_.write("a.bin", bin_file({lifted(0), lifted(1)}));
+  EXPECT_EQ(files(1), (Names{"a.bin/"}));
 }
 
 // What moves up to the end is as blurred there as before.

@@ -45,9 +45,33 @@ TEST_F(CliOptions, SizeThatIsNone) {
     EXPECT_TRUE(contains(render_refused_with({"--size", size}), "expected WIDTHxHEIGHT, each 1 to 65536")) << size;
 }
 
+// A script whose variable is not set.
+TEST_F(CliOptions, ValuesThatAreEmpty) {
+  const std::vector<std::vector<std::string>> all = {{"render", scene_, "-o", at("a.png"), "--kernel-dir"},
+                                                     {"render", scene_, "-o", at("a.png"), "--size"},
+                                                     {"render", scene_, "-o", at("a.png"), "--device"},
+                                                     {"render", scene_, "-o", at("a.png"), "--set"},
+                                                     {"render", scene_, "-o"},
+                                                     {"build", scene_, "--json"},
+                                                     {"plan", scene_, "--json"},
+                                                     {"plan", scene_, "--kernel-dir"},
+                                                     {"cost", scene_, "-o", at("cost"), "--size"},
+                                                     {"cost", scene_, "-o", at("cost"), "--reference"},
+                                                     {"cost", scene_, "-o", at("cost"), "--options"},
+                                                     {"serve", scene_, "--size"},
+                                                     {"serve", scene_, "--host"},
+                                                     {"serve", scene_, "--kernel-dir"},
+                                                     {"knit", at("c.chart"), "-o", at("t.json"), "--json"},
+                                                     {"bench", "--json"}};
+  for (std::vector<std::string> words : all) {
+    const std::string option = words.back() == "-o" ? "--output" : words.back();
+    words.push_back("");
+    EXPECT_TRUE(contains(refused(words), option + ": the value is empty; ")) << words[0] << " " << option;
+  }
+}
+
 TEST_F(CliOptions, FilmLargerThanTheDevice) {
-  EXPECT_TRUE(contains(render_refused_with({"--size", "65536x65536"}),
-                       ", the scene needs 549.8 GB: film 549.8 GB, "));
+  EXPECT_TRUE(contains(render_refused_with({"--size", "65536x65536"}), ", the scene needs 549.8 GB: film 549.8 GB, "));
 }
 
 TEST_F(CliOptions, NumbersOutOfRange) {

@@ -304,6 +304,25 @@ TEST(AtomicFile, WhatAKilledWriterLeftIsRemovedByTheNext) {
   EXPECT_EQ(left(".b."), "");
 }
 
+// A folder of frames may hold thousands of files: it is looked through by the first writing into it, not by each.
+TEST(AtomicFile, AFolderIsLookedThroughOnce) {
+  TemporaryFolder folder;
+  for (const char* name : {"a.txt", "b.txt"}) {
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      new AtomicFile(folder / name);
+      ::_exit(0);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    write_text_file(folder / "a.txt", "new");
+  }
+  EXPECT_EQ(folder.files(), 2u) << "what was left of a.txt has gone";
+  write_text_file(folder / "b.txt", "new");
+  EXPECT_EQ(folder.files(), 3u) << "what was left of b.txt since then waits for the next run";
+}
+
 TEST(AtomicFile, FullDiskIsReportedAndLeavesNothing) {
   TemporaryFolder folder;
   const std::string text(100000, 'x');

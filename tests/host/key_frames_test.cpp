@@ -123,9 +123,28 @@ TEST(AnimatedScene, WholeNumbersBetweenKeysAreRounded) {
   EXPECT_EQ(user_message([&] { scene(keys, {"animation.frame=5"}); }),
             "scene.json:2:103: integrator.lanes: the number 4.5 is not valid; valid: 0, 1, 8, 16; nothing lies between "
             "them, write the keys with \"hold\"");
-  // What is written with a fraction is still refused, in a key as elsewhere.
-  EXPECT_NE(refusal(R"({"keys": {"fabrics.cloth.yarn.plies": [[0, 2.5]]}})").find("a whole number is needed here"),
-            std::string::npos);
+  // Halves go away from zero.
+  EXPECT_EQ(at(2.5).fabrics[0].spec.plies, 3);
+  const std::string seed = R"({"keys": {"fabrics.cloth.mesh": [[0, {"frames": "c_#.obj"}]],
+    "fabrics.cloth.mesh.first": [[0, -2], [4, -4]]}})";
+  EXPECT_EQ(scene(seed, {"animation.frame=1"}).fabrics[0].mesh.sequence->first, -3);
+}
+
+// Whichever frame is looked at, also where what is between would be whole.
+TEST(AnimatedScene, AKeyOfAWholeNumberHasNoFraction) {
+  for (const char* frame : {"animation.frame=0", "animation.frame=5", "animation.frame=7.5", "animation.frame=99"}) {
+    const std::vector<std::string> set = {frame};
+    const auto line = [&](const std::string& keys) {
+      return user_message([&] { scene(R"({"keys": {)" + keys + "}}", set); });
+    };
+    EXPECT_EQ(line(R"("fabrics.cloth.yarn.plies": [[0, 2], [5, 2.5], [10, 3.5], [20, 4]])"),
+              "scene.json:1:128: fabrics.0.yarn.plies: a whole number is needed here, not the number 2.5");
+    EXPECT_EQ(line(R"("film.size": [[0, [8, 8]], [5, [8, 8.5], "hold"], [10, [9, 9]]])"),
+              "scene.json:1:122: film.size.1: a whole number is needed here, not the number 8.5");
+    EXPECT_EQ(line(R"("integrator.lanes": [[0, 1, "hold"], [50, 8.5]])"),
+              "scene.json:1:129: integrator.lanes: the number 8.5 is not valid; valid: 0, 1, 8, 16");
+    EXPECT_NO_THROW(scene(R"({"keys": {"camera.fov": [[0, 20], [5, 20.5], [10, 21]]}})", set));
+  }
 }
 
 TEST(AnimatedScene, WhatIsSetGoesBeforeKeys) {

@@ -40,13 +40,13 @@ TEST_F(ServeScene, EditsAreOverridesThatTheSchemaChecks) {
   scene.edit({"materials.yarn.color=#102030", "film.exposure=1"}, "");
   EXPECT_EQ(scene.scene().film.exposure, 1);
   EXPECT_EQ(hex_color(*scene.scene().materials[0].yarn.color), "#102030");
-  const uint64_t version = scene.version();
+  const std::vector<std::string> taken = scene.edits();
   const std::string line = user_message([&] { scene.edit({"film.exposure=99"}, ""); });
   EXPECT_EQ(line, "--set film.exposure=99: film.exposure: 99 is out of range; valid: -30 to 30");
   EXPECT_NE(user_message([&] { scene.edit({"materials.yarn.glos=1"}, ""); }).find("did you mean \"gloss\"?"),
             std::string::npos);
   EXPECT_NE(user_message([&] { scene.edit({"units=m"}, ""); }).find("not edited"), std::string::npos);
-  EXPECT_EQ(scene.version(), version) << "a refused edit changes nothing";
+  EXPECT_EQ(scene.edits(), taken) << "a refused edit changes nothing";
   EXPECT_EQ(scene.scene().film.exposure, 1);
   scene.edit({"film.exposure=2"}, "");
   EXPECT_EQ(scene.edits(), (std::vector<std::string>{"materials.yarn.color=#102030", "film.exposure=2"}));
@@ -69,20 +69,6 @@ TEST_F(ServeScene, UndoRedoAndReset) {
   EXPECT_TRUE(scene.edits().empty());
   EXPECT_TRUE(scene.undo());
   EXPECT_EQ(scene.scene().film.exposure, 3);
-}
-
-TEST_F(ServeScene, AVersionThatCouldNotBeMadeIsWithdrawn) {
-  scene.confirm(scene.version(), scene.edits());
-  scene.edit({"film.exposure=1"}, "");
-  scene.confirm(scene.version(), scene.edits());
-  scene.edit({"fabrics.0.gauge=null", "film.exposure=2"}, "");
-  const uint64_t bad = scene.version();
-  scene.withdraw(bad);
-  EXPECT_EQ(scene.scene().film.exposure, 1);
-  EXPECT_FALSE(scene.withdraw(scene.version())) << "nothing is left to take back";
-  scene.edit({"film.exposure=3"}, "");
-  scene.withdraw(bad);
-  EXPECT_EQ(scene.scene().film.exposure, 3) << "somebody has edited on";
 }
 
 TEST_F(ServeScene, NoFileOutsideOfTheFolderIsNamed) {

@@ -5,6 +5,7 @@
 
 #include <csignal>
 #include <cstring>
+#include <set>
 #include <thread>
 
 #include "host/serve/http_server.h"
@@ -130,6 +131,34 @@ TEST_F(ServeServer, ManyEditsAreCoalescedAndTheLastOneIsShown) {
   EXPECT_GT(accepted, 300);
   std::printf("%d edits in %.2f s\n", accepted, seconds);
   EXPECT_NE(served_->watch(picture_of(last), 60), "");
+}
+
+// A control that is dragged: whenever a version has been made, the next one is there already.
+TEST_F(ServeServer, PicturesAreSeenInTheMiddleOfADrag) {
+  ASSERT_NE(served_->watch("image/jpeg", 120), "");
+  const int viewer = served_->connect();
+  ::send(viewer, stream_request().data(), stream_request().size(), MSG_NOSIGNAL);
+  int first = 0, last = 0;
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 0; std::chrono::steady_clock::now() - start < std::chrono::seconds(2); ++i) {
+    const auto reply = served_->post(
+        "/edit", fmt::format(R"({{"set": ["fabrics.0.gauge.wales={:g}"], "gesture": "drag"}})", 30 + i * 1e-3));
+    if (reply.status != 200) continue;  // more than a hand can do
+    last = std::atoi(reply.body.c_str() + std::strlen("{\"revision\": "));
+    if (first == 0) first = last;
+  }
+  std::string stream;
+  std::vector<char> bytes(1 << 16);
+  for (ssize_t n; (n = ::recv(viewer, bytes.data(), bytes.size(), MSG_DONTWAIT)) > 0;)
+    stream.append(bytes.data(), size_t(n));
+  ::close(viewer);
+  std::set<int> seen;
+  const std::string name = "X-Wale-Revision: ";
+  for (size_t at = 0; (at = stream.find(name, at)) != std::string::npos; at += name.size())
+    if (const int revision = std::atoi(stream.c_str() + at + name.size()); revision >= first && revision < last)
+      seen.insert(revision);
+  std::printf("%d versions, %zu of them seen meanwhile\n", last - first, seen.size());
+  EXPECT_GE(seen.size(), 5u);
 }
 
 // How a picture is shown, or how good it has to be, needs no new one.
