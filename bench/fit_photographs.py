@@ -108,12 +108,13 @@ def run(*words):
 
 def fit(wale, data, out, cloth, weights):
     photos = data / "photos/fabric-btdf"
+    # Statistics of windows see the noise of a render as contrast of the cloth: samples enough that it is little.
     name = f"{cloth}_{'vgg' if weights else 'plain'}"
     where = out / f"{cloth}_fitted.json"
     material = out / f"{name}.json"
     words = [wale, "fit", where, "--front", photos / f"{cloth}_R.png", "--back", photos / f"{cloth}_T.png", "--corners",
              ",".join(f"{c:.2f}" for c in corners(PARTS["fitted"])), "--resolution", 1, "--unaligned", "--redo", "--parameters",
-             "transmit,reflect,roughness,optical_radius,exposure", "--spp", 8, "--final-spp", 24, "--starts", 1, "-o", material,
+             "transmit,reflect,roughness,optical_radius,exposure", "--spp", 16, "--final-spp", 384, "--starts", 1, "-o", material,
              "--report", out / f"{name}.html", "--progress", out / f"{name}_progress.png"]
     if weights:
         words += ["--weights", data / "vgg16/vgg16_imagenet_block1_block2.npz"]

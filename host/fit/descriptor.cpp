@@ -24,15 +24,23 @@ std::vector<Picture> levels_of(const Picture& picture, const DescriptorOptions& 
 
 std::string level_name(size_t level) { return level == 0 ? "full size" : "1/" + std::to_string(size_t(1) << level); }
 
-// Weights all equal, units from the values.
+// Weights all equal, units from the values where there are none yet.
 Blocks finished(std::vector<Block> blocks, const Picture& picture) {
   const double shade = brightness(picture);
   for (Block& block : blocks) {
     block.weight = 1.0 / double(blocks.size());
-    block.unit = unit_of(block.values, shade);
+    if (block.unit == 0) block.unit = unit_of(block.values, shade);
   }
   return blocks;
 }
+
+// What contrast is measured by: else a cloth of too much contrast would be fitted by a darker one.
+double shade_of(const Picture& picture, const Window& window) {
+  const auto mean = color_moments(picture, window).mean;
+  return (mean[0] + mean[1] + mean[2]) / 3;
+}
+
+float contrast(double deviation, double shade) { return shade > 0 ? float(deviation / shade) : 0.0f; }
 
 Block pixels_block(std::string name, std::vector<float> values, int passes) {
   return {std::move(name), 0, 0, std::move(values), passes, 0};
@@ -40,6 +48,13 @@ Block pixels_block(std::string name, std::vector<float> values, int passes) {
 
 Block windows_block(std::string name, std::vector<float> values, size_t windows) {
   return {std::move(name), 0, 0, std::move(values), 1, int(windows)};
+}
+
+// Values over the window's shade.
+Block contrast_block(std::string name, std::vector<float> values, size_t windows) {
+  Block block = windows_block(std::move(name), std::move(values), windows);
+  block.unit = unit_of(block.values, 1.0);
+  return block;
 }
 
 void append(std::vector<float>& values, const double* from, size_t count) {
@@ -64,7 +79,8 @@ void append_quantiles(const Picture& picture, const Window& window, std::vector<
   }
 }
 
-// Sum of weights, of sizes and of squares of differences to the next pixel across (step 1, 0) or down (0, 1).
+// Mean and root mean square of the sizes of differences to the next pixel across (step 1, 0) or down (0, 1), over the
+// window's shade.
 void append_edges(const Picture& picture, const Window& window, int step_x, int step_y, std::vector<float>& values) {
   double weights = 0, sizes[3] = {}, squares[3] = {};
   for (int j = 0; j + step_y < window.height; ++j)
@@ -79,8 +95,9 @@ void append_edges(const Picture& picture, const Window& window, int step_x, int 
         squares[c] += weight * difference * difference;
       }
     }
-  for (const double size : sizes) values.push_back(float(size / weights));
-  for (const double square : squares) values.push_back(float(std::sqrt(square / weights)));
+  const double shade = shade_of(picture, window);
+  for (const double size : sizes) values.push_back(contrast(size / weights, shade));
+  for (const double square : squares) values.push_back(contrast(std::sqrt(square / weights), shade));
 }
 
 void append_differences(const Picture& picture, int step_x, int step_y, std::vector<float>& values) {
@@ -121,11 +138,12 @@ Descriptor color_descriptor(const DescriptorOptions& options) {
     for (const Window& window : windows) {
       const ColorMoments moments = color_moments(picture, window);
       append(means, moments.mean.data(), 3);
-      append(roots, symmetric_root(moments.covariance).data(), 9);
+      const double shade = shade_of(picture, window);
+      for (const double root : symmetric_root(moments.covariance)) roots.push_back(contrast(root, shade));
       append_quantiles(picture, window, quantiles);
     }
     return finished({windows_block("mean", std::move(means), windows.size()),
-                     windows_block("spread", std::move(roots), windows.size()),
+                     contrast_block("spread", std::move(roots), windows.size()),
                      windows_block("quantiles", std::move(quantiles), windows.size())},
                     picture);
   };
@@ -147,7 +165,7 @@ Descriptor gradient_descriptor(const DescriptorOptions& options) {
           append_edges(level, window, 1, 0, values);
           append_edges(level, window, 0, 1, values);
         }
-        blocks.push_back(windows_block(name, std::move(values), windows.size()));
+        blocks.push_back(contrast_block(name, std::move(values), windows.size()));
       }
     }
     blocks = finished(std::move(blocks), picture);
@@ -164,10 +182,10 @@ Descriptor spectrum_descriptor(const DescriptorOptions& options) {
     const int count = options.alignment == Alignment::aligned ? 1 : options.windows;
     std::vector<float> values;
     for (const Window& window : windows(picture.width, picture.height, count)) {
-      const std::vector<double> bands = band_deviations(picture, window);
-      append(values, bands.data(), bands.size());
+      const double shade = shade_of(picture, window);
+      for (const double band : band_deviations(picture, window)) values.push_back(contrast(band, shade));
     }
-    return finished({windows_block("bands", std::move(values), size_t(count * count))}, picture);
+    return finished({contrast_block("bands", std::move(values), size_t(count * count))}, picture);
   };
 }
 

@@ -40,18 +40,19 @@ using Descriptor = std::function<Blocks(const Picture&)>;
 Descriptor low_pass_descriptor(const DescriptorOptions& options);
 
 /// Distribution of colours in the picture (aligned) or each window (unaligned): mean, symmetric square root of the
-/// covariance, and 16 quantiles of each channel. Squared differences of the first two add up to the squared Wasserstein
-/// distance of two Gaussians whose covariances commute (D. C. Dowson and B. V. Landau, J. Multivariate Analysis 12,
-/// 1982); those of the third are the squared Wasserstein distance on the line.
+/// covariance over the mean shade, and 16 quantiles of each channel. Squared differences of mean and root are what the
+/// squared Wasserstein distance of two Gaussians consists of whose covariances commute (D. C. Dowson and B. V. Landau,
+/// J. Multivariate Analysis 12, 1982); those of the quantiles are that distance on the line.
 Descriptor color_descriptor(const DescriptorOptions& options);
 
 /// Edges, at every level of a pyramid: differences of neighbours across and down. Aligned: all of them. Unaligned: mean
-/// and root mean square of their sizes in each window. It stands in for the features of a network where there are no
-/// weights: they, too, are edges at first.
+/// and root mean square of their sizes in each window, over its shade. It stands in for the features of a network where
+/// there are no weights: they, too, are edges at first.
 Descriptor gradient_descriptor(const DescriptorOptions& options);
 
-/// Standard deviation of luminance in each window (of the picture, where aligned) by band of spatial frequency, half an
-/// octave each: the spectrum averaged over rings, without phases, thus wherever the stitches lie.
+/// Contrast, standard deviation over mean shade, of luminance in each window (of the picture, where aligned) by band of
+/// spatial frequency, half an octave each: the spectrum averaged over rings, without phases, thus wherever the stitches
+/// lie.
 Descriptor spectrum_descriptor(const DescriptorOptions& options);
 
 /// Values of a kind and the picture's brightness to Block::unit.

@@ -162,10 +162,10 @@ TEST(FitLoss, KnownColors) {
   const Blocks blocks = color_descriptor({})(halves);
   ASSERT_EQ(blocks.size(), 3u);
   EXPECT_EQ(blocks[0].values, (std::vector<float>{0.5f, 0.25f, 0.5f}));
-  // Covariance 1/4 of (1, 0, -1) times itself, whose root is that over the square root of 8.
-  const double root = 1 / std::sqrt(8.0), expected[] = {root, 0, -root, 0, 0, 0, -root, 0, root};
+  // Covariance 1/4 of (1, 0, -1) times itself, whose root is that over the square root of 8; over the mean shade, 5/12.
+  const double root = 12.0 / 5 / std::sqrt(8.0), expected[] = {root, 0, -root, 0, 0, 0, -root, 0, root};
   ASSERT_EQ(blocks[1].values.size(), 9u);
-  for (size_t i = 0; i < 9; ++i) EXPECT_NEAR(blocks[1].values[i], expected[i], 1e-7) << i;
+  for (size_t i = 0; i < 9; ++i) EXPECT_NEAR(blocks[1].values[i], expected[i], 1e-6) << i;
   ASSERT_EQ(blocks[2].values.size(), 48u);
   for (size_t q = 0; q < 16; ++q) {
     EXPECT_EQ(blocks[2].values[q], q < 8 ? 0 : 1);
@@ -175,7 +175,7 @@ TEST(FitLoss, KnownColors) {
 }
 
 TEST(FitLoss, KnownEdges) {
-  const Picture ramp = painted(16, 12, [](int x, int y, int) { return 0.1 * x - 0.2 * y; });
+  const Picture ramp = painted(16, 12, [](int x, int y, int) { return 0.1 * x - 0.2 * y + 2.35; });
   DescriptorOptions options;
   options.levels = 1;
   const Blocks aligned = gradient_descriptor(options)(ramp);
@@ -186,7 +186,25 @@ TEST(FitLoss, KnownEdges) {
   options.windows = 1;
   const Blocks sizes = gradient_descriptor(options)(ramp);
   ASSERT_EQ(sizes[0].values.size(), 12u);  // sizes across, root mean squares across, both down
-  for (size_t i = 0; i < 12; ++i) EXPECT_NEAR(sizes[0].values[i], i < 6 ? 0.1 : 0.2, 1e-6) << i;
+  // Over the shade, 2 in the middle.
+  for (size_t i = 0; i < 12; ++i) EXPECT_NEAR(sizes[0].values[i], i < 6 ? 0.05 : 0.1, 1e-6) << i;
+}
+
+// A darker picture is no nearer to one of less contrast.
+TEST(FitLoss, ContrastIsThatOfAnyBrightness) {
+  const PicturePair target{stitches(64, 64), stitches(64, 64)};
+  PicturePair dark = target, black = target;
+  for (Picture* side : {&dark.front, &dark.back})
+    for (float& v : side->pixels) v *= 0.25f;
+  for (Picture* side : {&black.front, &black.back}) side->pixels.assign(side->pixels.size(), 0.0f);
+  for (const TermWeights& weights : {TermWeights{.gradient = 1}, TermWeights{.spectrum = 1}}) {
+    LossOptions options;
+    options.descriptors.alignment = Alignment::unaligned;
+    options.weights = weights;
+    const Loss loss(target, options);
+    EXPECT_NEAR(loss.loss(dark), 0, 1e-9);
+    EXPECT_NEAR(loss.loss(black), 1, 1e-6);
+  }
 }
 
 // Moved by half a stitch, a cloth looks the same: statistics see it far less than pixels do.
