@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "geom/error.h"
 #include "host/driver_crash.h"
 #include "host/tile_error.h"
 
@@ -137,6 +138,7 @@ bool ProgressiveRender::step() {
 }
 
 Image ProgressiveRender::picture() {
+  if (state_.shrink == 1 && tile_ > 0) bug("render: a picture in the middle of a pass");
   const Level& level =
       *std::find_if(levels_.begin(), levels_.end(), [&](const Level& l) { return l.shrink == state_.shrink; });
   const int w = level.width, h = level.height;
