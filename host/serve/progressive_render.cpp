@@ -110,8 +110,9 @@ bool ProgressiveRender::step() {
   const auto start = Clock::now();
   const uint64_t before = rays_of(wave);
   const double wanted = seconds_per_path_ > 0 ? kWaveSeconds / seconds_per_path_ : kLeastPaths;
-  const uint32_t paths = uint32_t(std::clamp(wanted, double(kLeastPaths), double(wave.pool())));
-  const uint32_t count = std::min(std::max(1u, std::min(paths, wave.pool()) / kTilePixels), level.tiles - tile_);
+  const uint32_t least = std::min(kLeastPaths, wave.pool());
+  const uint32_t paths = uint32_t(std::clamp(wanted, double(least), double(wave.pool())));
+  const uint32_t count = std::min(std::max(1u, paths / kTilePixels), level.tiles - tile_);
   std::vector<uint32_t> tiles(count);
   std::iota(tiles.begin(), tiles.end(), tile_);
   wave.trace(frame_, tiles, sample_, 1);
