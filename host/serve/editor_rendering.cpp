@@ -13,7 +13,6 @@
 namespace wale {
 namespace {
 
-constexpr int kJpegQuality = 90;
 constexpr std::chrono::milliseconds kIdle{100};
 // An edit that would knit for minutes is refused: more than these, and than twice what the scene was opened with.
 constexpr double kMostSegments = 2e7;
@@ -64,19 +63,19 @@ EditorSession::Version EditorSession::next_version() {
   return version;
 }
 
-void EditorSession::publish_picture(size_t view, const Version& version, ProgressiveRender& render) {
+void EditorSession::publish_picture(size_t view, const Version& version, Shown shown) {
   const FilmScene& film = version.scenes[view].film;
-  auto shown = std::make_shared<Shown>(Shown{render.picture(), film.exposure, film.view});
-  const std::string jpeg = display_jpeg(shown->image, shown->exposure, shown->view, kJpegQuality);
-  const RenderState& s = render.state();
+  shown.exposure = film.exposure;
+  shown.view = film.view;
+  const std::string jpeg = display_jpeg(shown.image, shown.exposure, shown.view, kJpegQuality);
   feed_.publish(fmt::format("picture.{}", view), "image/jpeg", jpeg,
                 {{"X-Wale-Revision", std::to_string(version.trial.revision)},
                  {"X-Wale-Size", fmt::format("{}x{}", film.width, film.height)},
-                 {"X-Wale-Shrink", std::to_string(s.shrink)},
-                 {"X-Wale-Samples", std::to_string(s.samples)}});
+                 {"X-Wale-Shrink", std::to_string(shown.shrink)},
+                 {"X-Wale-Samples", std::to_string(shown.samples)}});
   const std::lock_guard lock(mutex_);
   shown_.resize(std::max(shown_.size(), view + 1));
-  shown_[view] = std::move(shown);
+  shown_[view] = std::make_shared<const Shown>(std::move(shown));
 }
 
 void EditorSession::refuse(const Version& version, const std::string& line) {
@@ -132,8 +131,9 @@ void EditorSession::run(std::span<const Device> device, const Loaders& loaders,
       if (visible && next.fault.empty() && traced(next.scenes) == traced(version->scenes)) {
         version = std::move(next);
         confirm(*version);
+        // As they were seen last: some tiles may have a sample more by now, whose pass has not ended.
         for (size_t v = 0; v < views.count(); ++v)
-          if (views.render(v).state().shrink > 0) publish_picture(v, *version, views.render(v));
+          if (views.render(v).state().shrink > 0) publish_picture(v, *version, *shown_[v]);
         publish_cost("rendering", *version);
         continue;
       }
@@ -180,7 +180,8 @@ void EditorSession::run(std::span<const Device> device, const Loaders& loaders,
       continue;
     }
     if (!due) continue;
-    publish_picture(*view, *version, views.render(*view));
+    ProgressiveRender& render = views.render(*view);
+    publish_picture(*view, *version, {render.picture(), render.state().shrink, render.state().samples});
     publish_cost("rendering", *version);
     if (const uint64_t now = views.progress(goal).not_finite_since_start; now > told) {
       if (told == 0 || now >= 2 * told) {  // a line each time that it has doubled

@@ -23,6 +23,8 @@ struct EditorOptions {
 /// that come faster than they can be shown are skipped. An edit that cannot be shown is taken back.
 class EditorSession {
  public:
+  static constexpr int kJpegQuality = 90;  ///< of 100, of the pictures in the stream
+
   EditorSession(EditedScene scene, const EditorOptions& options);
 
   /// Answers what is not the page itself.
@@ -43,6 +45,14 @@ class EditorSession {
     std::vector<Scene> scenes{};  ///< one a view
     std::string fault{};          ///< why there are none
   };
+  /// A picture of whole passes, and how it is shown.
+  struct Shown {
+    Image image;
+    int shrink = 0;        ///< as RenderState's
+    uint32_t samples = 0;  ///< of every pixel
+    double exposure = 0;
+    std::string view{};
+  };
 
   HttpReply changed(const std::function<EditorChange()>& change);
   EditorChange control_change(const EditorRequest& request) const;
@@ -54,7 +64,7 @@ class EditorSession {
   bool another_pending() const;
   std::string state_json() const;
   void publish_state(bool now);
-  void publish_picture(size_t view, const Version& version, ProgressiveRender& render);
+  void publish_picture(size_t view, const Version& version, Shown shown);
   void confirm(const Version& version);
   void refuse(const Version& version, const std::string& line);
 
@@ -67,11 +77,6 @@ class EditorSession {
   CameraScene framed_;  ///< where the scene has no camera: how it was framed
   bool stop_ = false, dirty_ = true;
   std::chrono::steady_clock::time_point last_state_{};
-  struct Shown {
-    Image image;
-    double exposure = 0;
-    std::string view;
-  };
   std::vector<std::shared_ptr<const Shown>> shown_;
 };
 

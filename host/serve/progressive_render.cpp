@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "geom/error.h"
 #include "host/driver_crash.h"
 #include "host/tile_error.h"
 
@@ -109,8 +110,9 @@ bool ProgressiveRender::step() {
   const auto start = Clock::now();
   const uint64_t before = rays_of(wave);
   const double wanted = seconds_per_path_ > 0 ? kWaveSeconds / seconds_per_path_ : kLeastPaths;
-  const uint32_t paths = uint32_t(std::clamp(wanted, double(kLeastPaths), double(wave.pool())));
-  const uint32_t count = std::min(std::max(1u, std::min(paths, wave.pool()) / kTilePixels), level.tiles - tile_);
+  const uint32_t least = std::min(kLeastPaths, wave.pool());
+  const uint32_t paths = uint32_t(std::clamp(wanted, double(least), double(wave.pool())));
+  const uint32_t count = std::min(std::max(1u, paths / kTilePixels), level.tiles - tile_);
   std::vector<uint32_t> tiles(count);
   std::iota(tiles.begin(), tiles.end(), tile_);
   wave.trace(frame_, tiles, sample_, 1);
@@ -137,6 +139,7 @@ bool ProgressiveRender::step() {
 }
 
 Image ProgressiveRender::picture() {
+  if (state_.shrink == 1 && tile_ > 0) bug("render: a picture in the middle of a pass");
   const Level& level =
       *std::find_if(levels_.begin(), levels_.end(), [&](const Level& l) { return l.shrink == state_.shrink; });
   const int w = level.width, h = level.height;

@@ -32,7 +32,9 @@ class ProgressiveRender {
 
   /// Traces one wave. True when the picture is worth showing again.
   bool step();
-  /// The picture so far, channels R, G, B, at 1/shrink of the size; brings state().error up to date.
+  /// The picture so far, channels R, G, B, at 1/shrink of the size; brings state().error up to date. Of whole passes
+  /// alone, so that it depends on the scene and its samples, not on how fast waves were: not while state().shrink is 1
+  /// and a pass has begun. It has not when step() says that the picture is worth showing.
   Image picture();
   const RenderState& state() const { return state_; }
   /// Seconds until the tiles' error is `goal`, as far as the last picture tells; nothing where it does not.

@@ -35,6 +35,7 @@ class ServeServer : public Cli {
       served_ = std::make_unique<Served>(home_->path(), std::vector<std::string>{scene, "--quiet", "--size", "32x32"});
     }
     ASSERT_TRUE(served_->up()) << served_->process().err();
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // the test before may have asked as often as it could
   }
   void expect_alive() { EXPECT_EQ(served_->ask("GET", "/state").status, 200); }
   std::string stream_request() const {
