@@ -34,13 +34,17 @@ Blocks finished(std::vector<Block> blocks, const Picture& picture) {
   return blocks;
 }
 
-// What contrast is measured by: else a cloth of too much contrast would be fitted by a darker one.
-double shade_of(const Picture& picture, const Window& window) {
-  const auto mean = color_moments(picture, window).mean;
-  return (mean[0] + mean[1] + mean[2]) / 3;
+// What contrast is measured by: each channel's own mean, and a little of all of them where it is hardly there.
+std::array<double, 3> shades_of(const std::array<double, 3>& mean) {
+  const double grey = (mean[0] + mean[1] + mean[2]) / 3;
+  return {mean[0] + kLeastUnit * grey, mean[1] + kLeastUnit * grey, mean[2] + kLeastUnit * grey};
 }
 
-float contrast(double deviation, double shade) { return shade > 0 ? float(deviation / shade) : 0.0f; }
+// Logarithm of a deviation over a shade: a factor e counts as much as a picture that is black. Below kLeastContrast all
+// are alike.
+float contrast(double deviation, double shade) {
+  return float(std::log(kLeastContrast + (shade > 0 ? deviation / shade : 0.0)));
+}
 
 Block pixels_block(std::string name, std::vector<float> values, int passes) {
   return {std::move(name), 0, 0, std::move(values), passes, 0};
@@ -50,11 +54,25 @@ Block windows_block(std::string name, std::vector<float> values, size_t windows)
   return {std::move(name), 0, 0, std::move(values), 1, int(windows)};
 }
 
-// Values over the window's shade.
 Block contrast_block(std::string name, std::vector<float> values, size_t windows) {
   Block block = windows_block(std::move(name), std::move(values), windows);
-  block.unit = unit_of(block.values, 1.0);
+  block.unit = 1;
   return block;
+}
+
+// Contrast of each channel, and the correlations of R with G, G with B, and B with R.
+void append_spread(const ColorMoments& moments, std::vector<float>& values) {
+  const auto& m = moments.covariance;
+  const std::array<double, 3> shades = shades_of(moments.mean);
+  std::array<double, 3> deviation{};
+  for (size_t c = 0; c < 3; ++c) deviation[c] = std::sqrt(std::max(0.0, m[4 * c]));
+  for (size_t c = 0; c < 3; ++c) values.push_back(contrast(deviation[c], shades[c]));
+  for (size_t c = 0; c < 3; ++c) {
+    const size_t d = (c + 1) % 3;
+    // Noise of numbers is not a colour.
+    const double product = deviation[c] * deviation[d] + 1e-6 * shades[c] * shades[d];
+    values.push_back(product > 0 ? float(m[3 * c + d] / product) : 0.0f);
+  }
 }
 
 void append(std::vector<float>& values, const double* from, size_t count) {
@@ -79,8 +97,8 @@ void append_quantiles(const Picture& picture, const Window& window, std::vector<
   }
 }
 
-// Mean and root mean square of the sizes of differences to the next pixel across (step 1, 0) or down (0, 1), over the
-// window's shade.
+// Mean and root mean square of the sizes of differences to the next pixel across (step 1, 0) or down (0, 1), as
+// contrast.
 void append_edges(const Picture& picture, const Window& window, int step_x, int step_y, std::vector<float>& values) {
   double weights = 0, sizes[3] = {}, squares[3] = {};
   for (int j = 0; j + step_y < window.height; ++j)
@@ -95,9 +113,9 @@ void append_edges(const Picture& picture, const Window& window, int step_x, int 
         squares[c] += weight * difference * difference;
       }
     }
-  const double shade = shade_of(picture, window);
-  for (const double size : sizes) values.push_back(contrast(size / weights, shade));
-  for (const double square : squares) values.push_back(contrast(std::sqrt(square / weights), shade));
+  const std::array<double, 3> shades = shades_of(color_moments(picture, window).mean);
+  for (size_t c = 0; c < 3; ++c) values.push_back(contrast(sizes[c] / weights, shades[c]));
+  for (size_t c = 0; c < 3; ++c) values.push_back(contrast(std::sqrt(squares[c] / weights), shades[c]));
 }
 
 void append_differences(const Picture& picture, int step_x, int step_y, std::vector<float>& values) {
@@ -133,17 +151,16 @@ Descriptor low_pass_descriptor(const DescriptorOptions& options) {
 
 Descriptor color_descriptor(const DescriptorOptions& options) {
   return [options](const Picture& picture) {
-    std::vector<float> means, roots, quantiles;
+    std::vector<float> means, spread, quantiles;
     const std::vector<Window> windows = windows_of(picture, options);
     for (const Window& window : windows) {
       const ColorMoments moments = color_moments(picture, window);
       append(means, moments.mean.data(), 3);
-      const double shade = shade_of(picture, window);
-      for (const double root : symmetric_root(moments.covariance)) roots.push_back(contrast(root, shade));
+      append_spread(moments, spread);
       append_quantiles(picture, window, quantiles);
     }
     return finished({windows_block("mean", std::move(means), windows.size()),
-                     contrast_block("spread", std::move(roots), windows.size()),
+                     contrast_block("spread", std::move(spread), windows.size()),
                      windows_block("quantiles", std::move(quantiles), windows.size())},
                     picture);
   };
@@ -182,8 +199,9 @@ Descriptor spectrum_descriptor(const DescriptorOptions& options) {
     const int count = options.alignment == Alignment::aligned ? 1 : options.windows;
     std::vector<float> values;
     for (const Window& window : windows(picture.width, picture.height, count)) {
-      const double shade = shade_of(picture, window);
-      for (const double band : band_deviations(picture, window)) values.push_back(contrast(band, shade));
+      const auto mean = color_moments(picture, window).mean;
+      const double luminance = 0.2126 * mean[0] + 0.7152 * mean[1] + 0.0722 * mean[2];
+      for (const double band : band_deviations(picture, window)) values.push_back(contrast(band, luminance));
     }
     return finished({contrast_block("bands", std::move(values), size_t(count * count))}, picture);
   };

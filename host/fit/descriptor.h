@@ -21,6 +21,8 @@ struct Block {
 };
 using Blocks = std::vector<Block>;
 constexpr double kLeastUnit = 0.02;
+/// Contrast below which cloths look alike.
+constexpr double kLeastContrast = 0.02;
 
 /// Whether two pictures are compared pixel by pixel, or only what they look like in windows.
 enum class Alignment { aligned, unaligned };
@@ -39,20 +41,19 @@ using Descriptor = std::function<Blocks(const Picture&)>;
 /// near. Unaligned: mean colour of each window.
 Descriptor low_pass_descriptor(const DescriptorOptions& options);
 
-/// Distribution of colours in the picture (aligned) or each window (unaligned): mean, symmetric square root of the
-/// covariance over the mean shade, and 16 quantiles of each channel. Squared differences of mean and root are what the
-/// squared Wasserstein distance of two Gaussians consists of whose covariances commute (D. C. Dowson and B. V. Landau,
-/// J. Multivariate Analysis 12, 1982); those of the quantiles are that distance on the line.
+/// Distribution of colours in the picture (aligned) or each window (unaligned): mean; contrast (logarithm of standard
+/// deviation over mean) and correlations of the channels; and 16 quantiles of each channel, whose squared differences
+/// are the squared Wasserstein distance on the line.
 Descriptor color_descriptor(const DescriptorOptions& options);
 
 /// Edges, at every level of a pyramid: differences of neighbours across and down. Aligned: all of them. Unaligned: mean
-/// and root mean square of their sizes in each window, over its shade. It stands in for the features of a network where
+/// and root mean square of their sizes in each window, as contrast. It stands in for the features of a network where
 /// there are no weights: they, too, are edges at first.
 Descriptor gradient_descriptor(const DescriptorOptions& options);
 
-/// Contrast, standard deviation over mean shade, of luminance in each window (of the picture, where aligned) by band of
-/// spatial frequency, half an octave each: the spectrum averaged over rings, without phases, thus wherever the stitches
-/// lie.
+/// Contrast (logarithm of standard deviation over mean) of luminance in each window (of the picture, where aligned) by
+/// band of spatial frequency, half an octave each: the spectrum averaged over rings, without phases, thus wherever the
+/// stitches lie.
 Descriptor spectrum_descriptor(const DescriptorOptions& options);
 
 /// Values of a kind and the picture's brightness to Block::unit.

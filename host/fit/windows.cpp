@@ -1,6 +1,5 @@
 #include "host/fit/windows.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -84,15 +83,6 @@ ColorMoments color_moments(const Picture& picture, const Window& window) {
             weight * (double(rgb[a]) - moments.mean[a]) * (double(rgb[b]) - moments.mean[b]);
   });
   return moments;
-}
-
-std::array<double, 9> symmetric_root(const std::array<double, 9>& covariance) {
-  using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(Eigen::Map<const Matrix>(covariance.data()));
-  const Eigen::Vector3d roots = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();  // rounding may fall below 0
-  std::array<double, 9> root{};
-  Eigen::Map<Matrix>(root.data()) = solver.eigenvectors() * roots.asDiagonal() * solver.eigenvectors().transpose();
-  return root;
 }
 
 std::vector<double> band_deviations(const Picture& picture, const Window& window) {

@@ -27,9 +27,6 @@ struct ColorMoments {
 };
 ColorMoments color_moments(const Picture& picture, const Window& window);
 
-/// The symmetric matrix whose square is a covariance.
-std::array<double, 9> symmetric_root(const std::array<double, 9>& covariance);
-
 /// Standard deviation of luminance (Rec. 709) by band of frequency, from high to low; the squares of all bands add up
 /// to the variance under the squared weights. Band k begins at 2^(-1/2 - k/2) cycles a pixel and is half an octave
 /// wide; the last one holds all that is slower than one cycle a window. How many there are follows from the window's

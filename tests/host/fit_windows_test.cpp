@@ -53,19 +53,6 @@ TEST(FitWindows, MomentsOfTwoColors) {
   for (const double value : flat.covariance) EXPECT_NEAR(value, 0, 1e-12);
 }
 
-TEST(FitWindows, TheRootIsOne) {
-  const std::array<double, 9> covariance{4, 1, 0.5, 1, 3, -0.7, 0.5, -0.7, 2};
-  const auto root = symmetric_root(covariance);
-  for (size_t i = 0; i < 3; ++i)
-    for (size_t j = 0; j < 3; ++j) {
-      double product = 0;
-      for (size_t k = 0; k < 3; ++k) product += root[3 * i + k] * root[3 * k + j];
-      EXPECT_NEAR(product, covariance[3 * i + j], 1e-12);
-      EXPECT_NEAR(root[3 * i + j], root[3 * j + i], 1e-12);
-    }
-  for (const double value : symmetric_root({})) EXPECT_EQ(value, 0);
-}
-
 // A grey wave has all its deviation, amplitude over the square root of 2, in the band of its frequency.
 TEST(FitWindows, AWaveLiesInItsBand) {
   for (const auto& [periods, across] : {std::pair{8, true}, {8, false}, {20, true}, {3, false}}) {
