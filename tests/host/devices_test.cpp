@@ -28,8 +28,9 @@ class CliDevices : public Cli {
 };
 
 TEST_F(CliDevices, NumbersThatAreNone) {
-  for (const char* text : {"one", "", "0,", "0;1", "-1", "0,,1"})
+  for (const char* text : {"one", "0,", "0;1", "-1", "0,,1"})
     EXPECT_TRUE(contains(refused(render(text), 1, {kTwo}), "expected a number, numbers with commas")) << text;
+  EXPECT_TRUE(contains(refused(render(""), 1, {kTwo}), "--device: the value is empty"));
   EXPECT_TRUE(contains(refused(render("0,1,0"), 1, {kTwo}), "--device 0,1,0: device 0 is named twice"));
   EXPECT_TRUE(contains(refused(render("0,7"), 1, {kTwo}), "--device 7: there is no such device; valid: 0 to 1"));
   EXPECT_FALSE(contains(run_wale(render("7"), {kTwo}).err, "knit")) << "nobody waits for a knit in vain";
