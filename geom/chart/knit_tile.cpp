@@ -38,12 +38,8 @@ void check(const KnitSettings& s) {
 void add_strains(KnittedTile& tile, const KnitSettings& settings, std::chrono::steady_clock::time_point until,
                  const std::function<bool(double)>& progress) {
   const std::vector<double> strains(std::begin(kStrains), std::end(kStrains));
-  RelaxSettings relaxing;
-  relaxing.max_steps = settings.max_steps;
-  relaxing.until = until;
-  relaxing.watch = settings.watch;
-  relaxing.path = size_t(settings.starts) + 1;
-  RelaxedStrains found = relax_strains(tile.yarns, relaxing, strains, strains, threads_of(settings), progress);
+  RelaxedStrains found =
+      relax_strains(tile.yarns, strain_settings(settings, until), strains, strains, threads_of(settings), progress);
   tile.stopped = found.stopped;
   if (tile.stopped) return;
   for (size_t i = 0; i < found.reached.size() && !tile.strain_missed; ++i)

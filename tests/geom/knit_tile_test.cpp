@@ -9,6 +9,8 @@
 #include <cmath>
 #include <thread>
 
+#include "geom/chart/knit_once.h"
+
 namespace wale {
 namespace {
 
@@ -81,6 +83,18 @@ TEST(KnitTile, ProgressGoesOnInTheFinerPass) {
   EXPECT_GT(shares.back(), 0.9);
   EXPECT_LE(shares.back(), 1);
   EXPECT_LE(std::count(shares.begin(), shares.end(), 1.0), 1) << "what is not done is not told";
+}
+
+// A table of strains that may take an hour was cut off after the ten minutes of a relaxation of which nothing is said.
+TEST(KnitTile, TheTableOfStrainsHasAllOfTheTime) {
+  KnitSettings settings;
+  const auto now = std::chrono::steady_clock::now();
+  for (const double seconds : {20.0, 3600.0}) {
+    settings.max_seconds = seconds;
+    const auto until =
+        now + std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
+    EXPECT_EQ(end_of(strain_settings(settings, until)), until) << seconds;
+  }
 }
 
 // The first loop length is relaxed, and then the time is over: nothing is known of the gauge but how near that came.
