@@ -44,7 +44,8 @@ std::string reached_text(const KnittedTile& tile) {
 std::pair<std::string, std::string> reason(const KnitSettings& settings, const KnittedTile& tile,
                                            const std::optional<dvec2>& nearest) {
   const bool searches = settings.wales || settings.courses;  // from one start, whatever --starts
-  switch (tile.relaxed.end) {
+  // A search that time ended may hold a tile that ended otherwise.
+  switch (tile.gauge_end == GaugeEnd::time ? RelaxEnd::time : tile.relaxed.end) {
     case RelaxEnd::time:
       return {fmt::format("the {:g} s of --seconds are over", settings.max_seconds),
               settings.starts > 1 && !searches ? "more --seconds or fewer --starts may do" : "more --seconds may do"};
@@ -85,7 +86,7 @@ std::string gauge_reason(const KnitSettings& settings, const KnittedTile& tile) 
     case GaugeEnd::tries:
       return fmt::format("none of {} loop lengths gives this gauge, nothing is written; the nearest", tile.tries);
     default:
-      return "no loop length gives this gauge; the nearest";
+      return "no loop length gives this gauge, nothing is written; the nearest";
   }
 }
 

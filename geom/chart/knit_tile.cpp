@@ -63,7 +63,12 @@ KnittedTile knit_tile(const StitchChart& chart, const KnitSettings& settings,
   const Knit knit = knit_chart(chart);
   const auto first = [&](double share) { return !progress || progress(settings.strains ? kTileShare * share : share); };
   KnittedTile tile = settings.wales || settings.courses
-                         ? knit_to_gauge(chart, knit, settings, first)
+                         ? knit_to_gauge(
+                               settings,
+                               [&](double diameters, const KnitSettings& own, const auto& share) {
+                                 return knit_once(chart, knit, own, diameters, share);
+                               },
+                               first)
                          : knit_once(chart, knit, settings, loop_diameters_of(settings), first);
   if (settings.strains && tile.relaxed.converged && tile.gauge_end == GaugeEnd::reached && !tile.stopped)
     add_strains(tile, settings, until,
