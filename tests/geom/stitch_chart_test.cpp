@@ -152,8 +152,6 @@ TEST(StitchChart, BadJson) {
   json_refused("[[\"k\", \"q\"]]", {"c.json: row 1:2:1", "\"q\" is no stitch"});
   json_refused("[[\"k k\"]]", {"c.json: row 1:1", "not one word"});
   json_refused("[\"kkk\", [\"k\", \"k\", \"k2tog\"]]", {"c.json: row 2:3: this decrease takes 2"});
-  json_refused("[{\"stitches\": \"kk\", \"yarns\": \"abc\"}]", {"c.json: row 1:", "more than the 2"});
-  json_refused("[{\"stitches\": \"kkk\", \"yarns\": [\"a\", \"b\"]}]", {"c.json: row 1:", "mid-air"});
   json_refused("[{\"stiches\": \"kk\"}]", {"c.json: row 1: unknown key 'stiches'"});
   json_refused("[7]", {"c.json: row 1: an object is expected"});
   json_refused("[\"k\", [\"k\", 7]]", {"c.json: row 2:2: a text is expected"});
@@ -166,6 +164,23 @@ TEST(StitchChart, BadJson) {
   expect_user_error([] { json(R"({"wale_chart": 2, "rows": ["k"]})"); }, {"only version 1"});
   expect_user_error([] { json(R"({"wale_chart": 1, "yarns": {"a": "red"}, "rows": ["k"]})"); }, {"yarns.a", "#rrggbb"});
   expect_user_error([] { json(R"({"wale_chart": 1, "yarns": {"ab": null}, "rows": ["k"]})"); }, {"yarns.ab", "letter"});
+}
+
+// Not those of the text that stitches and yarns would be together.
+TEST(StitchChart, JsonNamesTheYarnThatIsWrong) {
+  const auto yarns = [](const std::string& rows, const std::string& wanted) {
+    expect_user_error(
+        [&] { json(R"({"wale_chart": 1, "yarns": {"a": null, "b": null}, "rows": ["kk", )" + rows + "]}"); }, {wanted});
+  };
+  yarns(R"({"stitches": ["k", "k"], "yarns": ["a", "q"]})", "c.json: row 2, yarns:2: no yarn is called q");
+  yarns(R"({"stitches": "kk", "yarns": "aq"})", "c.json: row 2, yarns:2: no yarn is called q");
+  yarns(R"({"stitches": "kk", "yarns": ["a", "B"]})", "c.json: row 2, yarns:2: 'B' is no yarn");
+  yarns(R"({"stitches": ["k", "k"], "yarns": "a ab"})", "c.json: row 2, yarns:4: yarns for more than the 2");
+  yarns(R"({"stitches": "kk", "yarns": ["a", "a", "b2"]})", "c.json: row 2, yarns:3: yarns for more than the 2");
+  yarns(R"({"stitches": "kkk", "yarns": ["a", "b"]})", "c.json: row 2, yarns:2: yarn b ends in mid-air: 2 of 3");
+  yarns(R"({"stitches": ["k", "k", "k"], "yarns": "a b"})", "c.json: row 2, yarns:3: yarn b ends in mid-air");
+  yarns(R"({"stitches": "kk", "yarns": ["a", "b0"]})", "c.json: row 2, yarns:2: a stitch is repeated");
+  yarns(R"({"stitches": "kk", "yarns": []})", "c.json: row 2, yarns:1: no yarn");
 }
 
 // Loops: where each one is taken, what lies in front.
