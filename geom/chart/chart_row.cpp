@@ -120,7 +120,12 @@ class Reader {
 
   void word(std::string_view text, int column) {
     for (const StitchWord& known : stitch_words())
-      if (text == known.word) return add({known.stitch}, column);
+      if (text == known.word) {
+        ChartCell cell;
+        cell.stitch = known.stitch;
+        cell.apart = known.apart;
+        return add(cell, column);
+      }
     if (const auto found = cable(text)) {
       add(*found, column);
       return;

@@ -230,8 +230,7 @@ class Machine {
           return {known.stitch};
     user_error(
         "{}:{}: {} loops on needle {} are {}; what can be read is k2tog, ssk, k3tog, k3togtbl, sk2p and cdd on the "
-        "front "
-        "bed, p2tog and ssp on the back bed",
+        "front bed, p2tog and ssp on the back bed",
         file_, pass.line, loops.size(), needle_text(needle),
         !worked ? "left alone"
         : tucks ? "tucked"

@@ -47,7 +47,12 @@ TEST(StitchChart, Decreases) {
   // Words, and what they are with blanks.
   EXPECT_EQ(chart_lines(text("o sk2p o o s2kp o\n")), (Lines{"o sk2p oo cdd o"}));
   EXPECT_EQ(chart_lines(text("s k2 p\nk4\n")), (Lines{"skkp", "kkkk"}));
-  refused("k4\nsk2p\n", {"c.chart:2:1: this row takes 3 of the 4"});
+  const Lines hint = {"sk2p is one decrease, single stitches are written with blanks: s k2 p"};
+  refused("k4\nsk2p\n", {"c.chart:2:1: this row takes 3 of the 4", hint[0]});
+  refused("k2\nsk2p\n", {"c.chart:2:1: this decrease takes 3 loops", hint[0]});
+  refused("sk2p\nk3\n", {"c.chart:2:1: this stitch takes 1 loops", hint[0]});
+  refused("k3\nssk\n", {"c.chart:2:1: this row takes 2 of the 3", "ssk is one decrease", "with blanks: s s k"});
+  refused("k4\ns2kp\n", {"with blanks: s2 k p"});
 }
 
 TEST(StitchChart, YarnsOfStitches) {
@@ -80,6 +85,31 @@ TEST(StitchChart, LinesReadBack) {
   std::string again;
   for (const std::string& line : chart_lines(chart)) again += line + "\n";
   EXPECT_EQ(chart_lines(text(again)), chart_lines(chart));
+}
+
+// Two or three symbols side by side may spell the word of another stitch.
+TEST(StitchChart, EveryTripleReadsBack) {
+  std::vector<ChartCell> symbols;
+  for (int s = int(Stitch::knit); s < int(Stitch::cable); ++s) symbols.push_back({Stitch(s)});
+  symbols.push_back({Stitch::cable, 2, 1});
+  const auto same = [](const ChartCell& a, const ChartCell& b) {
+    return a.stitch == b.stitch && a.left == b.left && a.right == b.right && a.left_in_front == b.left_in_front;
+  };
+  const auto reads_back = [&](const std::vector<ChartCell>& cells) {
+    StitchChart chart;
+    chart.yarns = {{}};
+    chart.rows = {{cells, {}, ""}};
+    const std::string line = chart_lines(chart)[0];
+    EXPECT_TRUE(std::ranges::equal(parse_chart_text(line, "c").rows[0].cells, cells, same)) << line;
+  };
+  for (const ChartCell& a : symbols)
+    for (const ChartCell& b : symbols) {
+      reads_back({a, b});
+      for (const ChartCell& c : symbols) {
+        reads_back({a, b, c});
+        reads_back({symbols.back(), a, b, c, symbols.back()});
+      }
+    }
 }
 
 TEST(StitchChart, MarkOfUtf8IsNoStitch) { EXPECT_EQ(text("\xef\xbb\xbfkp\n").wales(), 2); }
