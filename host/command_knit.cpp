@@ -54,8 +54,9 @@ std::pair<std::string, std::string> reason(const KnitSettings& settings, const K
     case RelaxEnd::jammed:
       return {fmt::format("the yarn jams (stretched by {:.1f} %)", 100 * tile.relaxed.strain),
               tile.strain_missed ? "leave --strains out"
-              : nearest ? fmt::format("the nearest that holds, on the way to the free one, is --period {:.4g}x{:.4g}",
-                                      kPerMetre * nearest->x, kPerMetre * nearest->y)
+              : nearest ? fmt::format("the nearest that holds{}, on the way to the free one, is --period {:.4g}x{:.4g}",
+                                      settings.strains ? " without --strains" : "", kPerMetre * nearest->x,
+                                      kPerMetre * nearest->y)
               : settings.period  ? "another --period or another --loop may do"
               : settings.wales   ? "fewer --wales may do"
               : settings.courses ? "fewer --courses may do"

@@ -31,6 +31,8 @@ void check(const KnitSettings& s) {
   for (const auto& gauge : {s.wales, s.courses})
     if (gauge) require(*gauge * s.yarn_thickness, 1e-3, 2, "a gauge", " stitches per yarn diameter", 1);
   if (s.period && (s.wales || s.courses)) user_error("a period that is held has its gauge; give one of them");
+  if (s.period && (s.tension != dvec2(0.0) || s.blocking != 0))
+    user_error("a period that is held is not pulled at; leave it out, or blocking and tension");
   if (s.wales && s.courses) user_error("one loop length gives both wales and courses; ask for one of them");
   if (s.loop_length != 0 && (s.wales || s.courses)) user_error("the loop length gives the gauge; ask for one of them");
 }

@@ -131,6 +131,13 @@ TEST_F(CliKnit, AHeldPeriodThatStretchesTheYarnIsRefusedWithTheNearestThatHolds)
   }
 }
 
+// The table of strains is not relaxed for the advice.
+TEST_F(CliKnit, TheNearestPeriodIsSaidToBeWithoutStrains) {
+  const std::string line = knit_refused(chart("k\n"), {"--starts", "1", "--period", "6x3", "--strains", "--quiet"});
+  EXPECT_TRUE(contains(line, "the nearest that holds without --strains, on the way to the free one, is --period "))
+      << line;
+}
+
 // Rows of nothing but tucks put two yarns through every loop: 13.2 diameters of yarn do not go round them. From a jam
 // the energy can only rise, and that is seen long before the steps are done.
 TEST_F(CliKnit, RowsOfTucksNeedALongerLoop) {
@@ -213,6 +220,10 @@ TEST_F(CliKnit, SettingsOutOfProportion) {
   EXPECT_TRUE(contains(knit_refused(file, {"--period", "90000x2"}),
                        "the yarn of this loop length does not reach; valid: up to 13.2 x 6.6 mm"));
   EXPECT_TRUE(contains(knit_refused(file, {"--period", "4x7"}), "does not reach"));
+  for (const char* pull : {"--blocking", "--course-tension", "--wale-tension"})
+    EXPECT_TRUE(contains(knit_refused(file, {"--period", "4.3x2", pull, "0.5"}),
+                         "a period that is held is not pulled at; leave it out, or blocking and tension"))
+        << pull;
   EXPECT_TRUE(contains(knit_refused(file, {"--wales", "20", "--courses", "30"}), "ask for one of them"));
   EXPECT_TRUE(contains(knit_refused(file, {"--loop", "12", "--wales", "20"}), "ask for one of them"));
 }
