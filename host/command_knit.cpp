@@ -44,7 +44,8 @@ std::string reached_text(const KnittedTile& tile) {
 std::pair<std::string, std::string> reason(const KnitSettings& settings, const KnittedTile& tile,
                                            const std::optional<dvec2>& nearest) {
   const bool searches = settings.wales || settings.courses;  // from one start, whatever --starts
-  switch (tile.relaxed.end) {
+  // A search that time ended may hold a tile that ended otherwise.
+  switch (tile.gauge_end == GaugeEnd::time ? RelaxEnd::time : tile.relaxed.end) {
     case RelaxEnd::time:
       return {fmt::format("the {:g} s of --seconds are over", settings.max_seconds),
               settings.starts > 1 && !searches ? "more --seconds or fewer --starts may do" : "more --seconds may do"};
@@ -53,8 +54,9 @@ std::pair<std::string, std::string> reason(const KnitSettings& settings, const K
     case RelaxEnd::jammed:
       return {fmt::format("the yarn jams (stretched by {:.1f} %)", 100 * tile.relaxed.strain),
               tile.strain_missed ? "leave --strains out"
-              : nearest ? fmt::format("the nearest that holds, on the way to the free one, is --period {:.4g}x{:.4g}",
-                                      kPerMetre * nearest->x, kPerMetre * nearest->y)
+              : nearest ? fmt::format("the nearest that holds{}, on the way to the free one, is --period {:.4g}x{:.4g}",
+                                      settings.strains ? " without --strains" : "", kPerMetre * nearest->x,
+                                      kPerMetre * nearest->y)
               : settings.period  ? "another --period or another --loop may do"
               : settings.wales   ? "fewer --wales may do"
               : settings.courses ? "fewer --courses may do"
@@ -85,7 +87,7 @@ std::string gauge_reason(const KnitSettings& settings, const KnittedTile& tile) 
     case GaugeEnd::tries:
       return fmt::format("none of {} loop lengths gives this gauge, nothing is written; the nearest", tile.tries);
     default:
-      return "no loop length gives this gauge; the nearest";
+      return "no loop length gives this gauge, nothing is written; the nearest";
   }
 }
 

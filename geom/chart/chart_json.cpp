@@ -2,6 +2,8 @@
 // first. A row is a text as in the text language, a list of its words, or {"stitches": text or list, "yarns": text or
 // list of letters}. Messages name row and column as those of texts do: "row 2:5" is the second row and its fifth
 // character, or the fifth word where it is a list; "row 2, yarns:5" is a letter of its yarns.
+#include <algorithm>
+
 #include "geom/chart/chart_row.h"
 #include "geom/error.h"
 #include "geom/json_value.h"
@@ -45,12 +47,18 @@ ChartRow row_of(const JsonValue& value, const std::string& file, const std::stri
     text = stitches.text();
     if (text.find('|') != std::string::npos) user_error("{}: yarns stand under \"yarns\" here", where);
   }
+  ChartRow row = parse_chart_row(text, where, 1, yarns, closed);
   if (named && value.has("yarns")) {
     const std::string there = place + ", yarns";
     const JsonValue letters = value["yarns"].called(there);
-    text += "|" + (letters.is_list() ? words_of(letters, there, "letter of a yarn") : letters.text());
+    const bool list = letters.is_list();
+    const std::string read = list ? words_of(letters, there, "letter of a yarn") : letters.text();
+    // A character of a text, an entry of a list: they are joined with blanks.
+    const auto column = [&](size_t i) {
+      return 1 + int(list ? std::count(read.begin(), read.begin() + std::ptrdiff_t(i), ' ') : std::ptrdiff_t(i));
+    };
+    parse_row_yarns(row, read, {file + ": " + there, column}, yarns, closed);
   }
-  ChartRow row = parse_chart_row(text, where, 1, yarns, closed);
   for (size_t i = 0; i < word_of.size() && i < row.cells.size(); ++i) row.cells[i].column = word_of[i];
   return row;
 }

@@ -73,26 +73,40 @@ std::optional<ChartCell> cable(std::string_view word) {
   return cell;
 }
 
+// The count behind a symbol at text[i - 1]; 1 without one. Moves i past it.
+int count(std::string_view text, size_t& i, const TextPlace& place) {
+  if (i >= text.size() || !is_digit(text[i])) return 1;
+  std::string_view rest = text.substr(i);
+  const auto number = take_number(rest);
+  if (!number || *number < 1) user_error("{}:{}: a stitch is repeated 1 to 1000 times", place.where, place.column(i));
+  i = text.size() - rest.size();
+  return *number;
+}
+
+int yarn_of(char letter, const std::string& where, int column, std::vector<ChartYarn>& yarns, bool closed) {
+  for (size_t i = 0; i < yarns.size(); ++i)
+    if (yarns[i].letter == letter) return int(i);
+  std::string known;
+  for (const ChartYarn& y : yarns) known += std::string(known.empty() ? "" : ", ") + y.letter;
+  if (letter < 'a' || letter > 'z')
+    user_error("{}:{}: '{}' is no yarn; yarns are letters a to z", where, column, one_line(std::string(1, letter)));
+  if (closed) user_error("{}:{}: no yarn is called {}; there are {}", where, column, letter, known);
+  yarns.push_back({letter, {}});
+  return int(yarns.size()) - 1;
+}
+
 class Reader {
  public:
-  Reader(const std::string& where, int column, std::vector<ChartYarn>& yarns, bool closed)
-      : where_(where), first_(column), yarns_(yarns), closed_(closed) {
-    row_.where = where;
-  }
+  Reader(const std::string& where, int column) : where_(where), first_(column) { row_.where = where; }
 
-  ChartRow row(std::string_view text) {
-    const size_t bar = text.find('|');
-    const std::string_view stitches = text.substr(0, bar);
+  ChartRow row(std::string_view stitches) {
     for (size_t at = 0; at < stitches.size();) {
       size_t end = at;
       while (end < stitches.size() && !is_blank(stitches[end])) ++end;
       if (end > at) word(stitches.substr(at, end - at), first_ + int(at));
       at = end + 1;
     }
-    if (bar == std::string_view::npos)
-      row_.yarn.assign(size_t(row_.makes()), 0);
-    else
-      letters(text.substr(bar + 1), first_ + int(bar) + 1);
+    row_.yarn.assign(size_t(row_.makes()), 0);
     return std::move(row_);
   }
 
@@ -104,19 +118,14 @@ class Reader {
     if (loops_ > kMostStitches) user_error("{}:{}: a row of more than {} stitches", where_, column, kMostStitches);
   }
 
-  // The count behind a symbol at text[i - 1]; 1 without one. Moves i past it.
-  int count(std::string_view text, size_t& i, int column) const {
-    if (i >= text.size() || !is_digit(text[i])) return 1;
-    std::string_view rest = text.substr(i);
-    const auto number = take_number(rest);
-    if (!number || *number < 1) user_error("{}:{}: a stitch is repeated 1 to 1000 times", where_, column + int(i));
-    i = text.size() - rest.size();
-    return *number;
-  }
-
   void word(std::string_view text, int column) {
     for (const StitchWord& known : stitch_words())
-      if (text == known.word) return add({known.stitch}, column);
+      if (text == known.word) {
+        ChartCell cell;
+        cell.stitch = known.stitch;
+        cell.apart = known.apart;
+        return add(cell, column);
+      }
     if (const auto found = cable(text)) {
       add(*found, column);
       return;
@@ -128,7 +137,8 @@ class Reader {
                    column + int(i), one_line(std::string(text.substr(i))), words());
       const int there = column + int(i);
       ++i;
-      for (int k = count(text, i, column); k > 0; --k) add({*stitch}, there);
+      for (int k = count(text, i, {where_, [&](size_t c) { return column + int(c); }}); k > 0; --k)
+        add({*stitch}, there);
     }
   }
 
@@ -138,48 +148,8 @@ class Reader {
     return out;
   }
 
-  int yarn(char letter, int column) {
-    for (size_t i = 0; i < yarns_.size(); ++i)
-      if (yarns_[i].letter == letter) return int(i);
-    std::string known;
-    for (const ChartYarn& y : yarns_) known += std::string(known.empty() ? "" : ", ") + y.letter;
-    if (letter < 'a' || letter > 'z')
-      user_error("{}:{}: '{}' is no yarn; yarns are letters a to z", where_, column, one_line(std::string(1, letter)));
-    if (closed_) user_error("{}:{}: no yarn is called {}; there are {}", where_, column, letter, known);
-    yarns_.push_back({letter, {}});
-    return int(yarns_.size()) - 1;
-  }
-
-  void letters(std::string_view text, int column) {
-    const int makes = row_.makes();
-    int last = column;
-    for (size_t i = 0; i < text.size();) {
-      if (is_blank(text[i])) {
-        ++i;
-        continue;
-      }
-      last = column + int(i);
-      const int number = yarn(text[i], last);
-      ++i;
-      const int times = count(text, i, column);
-      if (int(row_.yarn.size()) + times > std::max(makes, 1) || int(row_.yarn.size()) + times > kMostStitches)
-        user_error("{}:{}: yarns for more than the {} stitches of the row", where_, last, makes);
-      row_.yarn.insert(row_.yarn.end(), size_t(times), number);
-      if (row_.yarn.size() == 1) single_ = times == 1;
-    }
-    if (row_.yarn.empty()) user_error("{}:{}: no yarn behind '|'; leave it out, or give one letter", where_, column);
-    if (row_.yarn.size() == 1 && single_)
-      row_.yarn.assign(size_t(makes), row_.yarn.front());
-    else if (int(row_.yarn.size()) < makes)
-      user_error("{}:{}: yarn {} ends in mid-air: {} of {} stitches have a yarn", where_, last,
-                 yarns_[size_t(row_.yarn.back())].letter, row_.yarn.size(), makes);
-  }
-
   const std::string& where_;
   int first_;
-  std::vector<ChartYarn>& yarns_;
-  bool closed_;
-  bool single_ = false;
   int loops_ = 0;
   ChartRow row_;
 };
@@ -188,7 +158,42 @@ class Reader {
 
 ChartRow parse_chart_row(std::string_view text, const std::string& where, int column, std::vector<ChartYarn>& yarns,
                          bool closed) {
-  return Reader(where, column, yarns, closed).row(text);
+  const size_t bar = text.find('|');
+  ChartRow row = Reader(where, column).row(text.substr(0, bar));
+  if (bar != std::string_view::npos) {
+    const int first = column + int(bar) + 1;
+    parse_row_yarns(row, text.substr(bar + 1), {where, [&](size_t i) { return first + int(i); }}, yarns, closed);
+  }
+  return row;
+}
+
+void parse_row_yarns(ChartRow& row, std::string_view text, const TextPlace& place, std::vector<ChartYarn>& yarns,
+                     bool closed) {
+  const int makes = row.makes();
+  row.yarn.clear();
+  bool single = false;
+  int last = 0;
+  for (size_t i = 0; i < text.size();) {
+    if (is_blank(text[i])) {
+      ++i;
+      continue;
+    }
+    last = place.column(i);
+    const int number = yarn_of(text[i], place.where, last, yarns, closed);
+    ++i;
+    const int times = count(text, i, place);
+    if (int(row.yarn.size()) + times > std::max(makes, 1) || int(row.yarn.size()) + times > kMostStitches)
+      user_error("{}:{}: yarns for more than the {} stitches of the row", place.where, last, makes);
+    row.yarn.insert(row.yarn.end(), size_t(times), number);
+    if (row.yarn.size() == 1) single = times == 1;
+  }
+  if (row.yarn.empty())
+    user_error("{}:{}: no yarn behind '|'; leave it out, or give one letter", place.where, place.column(0));
+  if (row.yarn.size() == 1 && single)
+    row.yarn.assign(size_t(makes), row.yarn.front());
+  else if (int(row.yarn.size()) < makes)
+    user_error("{}:{}: yarn {} ends in mid-air: {} of {} stitches have a yarn", place.where, last,
+               yarns[size_t(row.yarn.back())].letter, row.yarn.size(), makes);
 }
 
 std::optional<std::array<uint8_t, 3>> parse_color(std::string_view text) {

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <optional>
 
-#include "geom/chart/knit_once.h"
-
 namespace wale {
 namespace {
 
@@ -25,8 +23,9 @@ double next_length(std::vector<dvec2> tried, double wanted) {  // (loop length, 
 
 }  // namespace
 
-// Where a loop jams it was too short. Where it ran out of steps nobody knows; longer ones relax sooner.
-KnittedTile knit_to_gauge(const StitchChart& chart, const Knit& knit, const KnitSettings& settings,
+// Where a loop jams it was too short. Where it ran out of steps, or got stuck, nobody knows: longer ones relax sooner,
+// but one that is longer than another that came to rest only bounds the way from that one.
+KnittedTile knit_to_gauge(const KnitSettings& settings, const KnitOfLength& knit,
                           const std::function<bool(double)>& progress) {
   constexpr int kTries = 10;
   constexpr double kBracket = 1.02;
@@ -35,7 +34,8 @@ KnittedTile knit_to_gauge(const StitchChart& chart, const Knit& knit, const Knit
   const int axis = settings.wales ? 0 : 1;
   const double wanted = settings.wales ? *settings.wales : *settings.courses;
   const auto miss = [&](const KnittedTile& tile) { return std::abs(tile.gauge[axis] / wanted - 1); };
-  double length = kPlainLoop, jams = 0;
+  double length = kPlainLoop, jams = 0, shortest = kLongestLoop;
+  std::vector<double> unknown;  // lengths that failed, longer than one that came to rest
   std::vector<dvec2> tried;
   std::optional<KnittedTile> best;
   KnitSettings rest = settings;
@@ -47,8 +47,8 @@ KnittedTile knit_to_gauge(const StitchChart& chart, const Knit& knit, const Knit
     if (rest.max_seconds <= 0) why = GaugeEnd::time;
     if (tries == kTries && why == GaugeEnd::none) why = GaugeEnd::tries;
     if (tries == kTries || why == GaugeEnd::time) break;
-    KnittedTile tile = knit_once(chart, knit, rest, length,
-                                 [&](double share) { return !progress || progress((tries + share) / kTries); });
+    KnittedTile tile =
+        knit(length, rest, [&](double share) { return !progress || progress((tries + share) / kTries); });
     ++tries;
     if (tile.stopped) {
       tile.tries = tries;
@@ -59,20 +59,31 @@ KnittedTile knit_to_gauge(const StitchChart& chart, const Knit& knit, const Knit
       if (tile.relaxed.end == RelaxEnd::steps) why = GaugeEnd::steps;
       if (tile.relaxed.end == RelaxEnd::stuck) why = GaugeEnd::stuck;
       if (tile.relaxed.end == RelaxEnd::time) why = GaugeEnd::time;
-      jams = std::max(jams, length);
+      if (tile.relaxed.end == RelaxEnd::jammed || length < shortest)
+        jams = std::max(jams, length);
+      else
+        unknown.push_back(length);
       if (!tried.empty()) next = 0.5 * (length + best->loop_length / settings.yarn_thickness);
-      if (!best) best = std::move(tile);
+      if (tried.empty()) best = std::move(tile);
       if (why == GaugeEnd::time) break;
     } else {
       tried.emplace_back(length, tile.gauge[axis]);
+      shortest = std::min(shortest, length);
       if (tried.size() == 1 || miss(tile) < miss(*best)) best = std::move(tile);
       if (miss(*best) <= kGaugeTolerance) break;
       next = next_length(tried, wanted);
     }
     next = std::clamp(next, std::max(kShortestLoop, jams), kLongestLoop);
+    // Neither beyond a length that failed, as seen from the nearest that came to rest: half-way to it.
+    const double from = tried.empty() ? next : best->loop_length / settings.yarn_thickness;
+    bool near = false;
+    for (const double failed : unknown)
+      if ((failed - from) * (failed - next) <= 0) {
+        next = std::sqrt(from * failed);
+        near = std::max(from, failed) < kBracket * std::min(from, failed);
+      }
+    if (near) break;
     // Where the loop would be one that jams, the shortest that does not is looked for, until the two are near.
-    double shortest = kLongestLoop;
-    for (const dvec2& t : tried) shortest = std::min(shortest, t.x);
     if (next < kBracket * jams && !tried.empty()) next = std::sqrt(jams * shortest);
     if (std::abs(next / length - 1) < 1e-4 || (!tried.empty() && next < kBracket * jams)) break;
     length = next;

@@ -102,6 +102,16 @@ unsigned threads_of(const KnitSettings& settings) {
   return settings.threads ? settings.threads : std::max(1u, std::thread::hardware_concurrency());
 }
 
+RelaxSettings strain_settings(const KnitSettings& settings, std::chrono::steady_clock::time_point until) {
+  RelaxSettings out;
+  out.max_steps = settings.max_steps;
+  out.max_seconds = settings.max_seconds;
+  out.until = until;
+  out.watch = settings.watch;
+  out.path = size_t(settings.starts) + 1;
+  return out;
+}
+
 dvec3 rounded_to_nanometres(const dvec3& p) { return {rounded(p.x), rounded(p.y), rounded(p.z)}; }
 
 KnittedTile knit_once(const StitchChart& chart, const Knit& knit, const KnitSettings& settings, double diameters,

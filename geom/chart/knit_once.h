@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <functional>
 
 #include "geom/chart/knit_tile.h"
@@ -10,6 +11,9 @@ namespace wale {
 /// knit_tile() does but for the search for a gauge and the table of strains. Settings are valid ones.
 KnittedTile knit_once(const StitchChart& chart, const Knit& knit, const KnitSettings& settings, double diameters,
                       const std::function<bool(double)>& progress);
+
+/// What the shapes of the table of strains are relaxed with, until the settings' time for all relaxations is over.
+RelaxSettings strain_settings(const KnitSettings& settings, std::chrono::steady_clock::time_point until);
 
 /// Yarn of one stitch that the settings ask for, in yarn diameters.
 double loop_diameters_of(const KnitSettings& settings);

@@ -31,6 +31,8 @@ void check(const KnitSettings& s) {
   for (const auto& gauge : {s.wales, s.courses})
     if (gauge) require(*gauge * s.yarn_thickness, 1e-3, 2, "a gauge", " stitches per yarn diameter", 1);
   if (s.period && (s.wales || s.courses)) user_error("a period that is held has its gauge; give one of them");
+  if (s.period && (s.tension != dvec2(0.0) || s.blocking != 0))
+    user_error("a period that is held is not pulled at; leave it out, or blocking and tension");
   if (s.wales && s.courses) user_error("one loop length gives both wales and courses; ask for one of them");
   if (s.loop_length != 0 && (s.wales || s.courses)) user_error("the loop length gives the gauge; ask for one of them");
 }
@@ -38,12 +40,8 @@ void check(const KnitSettings& s) {
 void add_strains(KnittedTile& tile, const KnitSettings& settings, std::chrono::steady_clock::time_point until,
                  const std::function<bool(double)>& progress) {
   const std::vector<double> strains(std::begin(kStrains), std::end(kStrains));
-  RelaxSettings relaxing;
-  relaxing.max_steps = settings.max_steps;
-  relaxing.until = until;
-  relaxing.watch = settings.watch;
-  relaxing.path = size_t(settings.starts) + 1;
-  RelaxedStrains found = relax_strains(tile.yarns, relaxing, strains, strains, threads_of(settings), progress);
+  RelaxedStrains found =
+      relax_strains(tile.yarns, strain_settings(settings, until), strains, strains, threads_of(settings), progress);
   tile.stopped = found.stopped;
   if (tile.stopped) return;
   for (size_t i = 0; i < found.reached.size() && !tile.strain_missed; ++i)
@@ -67,7 +65,12 @@ KnittedTile knit_tile(const StitchChart& chart, const KnitSettings& settings,
   const Knit knit = knit_chart(chart);
   const auto first = [&](double share) { return !progress || progress(settings.strains ? kTileShare * share : share); };
   KnittedTile tile = settings.wales || settings.courses
-                         ? knit_to_gauge(chart, knit, settings, first)
+                         ? knit_to_gauge(
+                               settings,
+                               [&](double diameters, const KnitSettings& own, const auto& share) {
+                                 return knit_once(chart, knit, own, diameters, share);
+                               },
+                               first)
                          : knit_once(chart, knit, settings, loop_diameters_of(settings), first);
   if (settings.strains && tile.relaxed.converged && tile.gauge_end == GaugeEnd::reached && !tile.stopped)
     add_strains(tile, settings, until,

@@ -31,7 +31,6 @@ constexpr size_t kMostLoops = 3;      // on a needle: no decrease of a chart tak
 struct Held {
   int wale = 0;     // of the row below
   int arrival = 0;  // transfers so far when it came to this needle; 0: it was made here
-  int moved = 0;    // needles to the right since it was made
 };
 
 class Machine {
@@ -146,7 +145,7 @@ class Machine {
     std::vector<Held> loops = std::move(at->second);
     held_.erase(at);
     ++transfers_;
-    for (Held& loop : loops) loop.arrival = transfers_, loop.moved += to.number - from.number;
+    for (Held& loop : loops) loop.arrival = transfers_;
     std::vector<Held>& there = held_[to];
     if (there.size() + loops.size() > kMostLoops)
       fail(fmt::format("{} loops on needle {}; a chart takes up to {} as one", there.size() + loops.size(),
@@ -199,7 +198,7 @@ class Machine {
     for (size_t i = 0; i < row.cells.size(); ++i) row.cells[i].column = int(i) + 1;
     rows_.push_back(std::move(row));
     reach_.push_back(reach);
-    for (size_t i = 0; i < needles.size(); ++i) held_[needles[i]] = {{int(i), 0, 0}};
+    for (size_t i = 0; i < needles.size(); ++i) held_[needles[i]] = {{int(i), 0}};
   }
 
   struct Pass {
@@ -231,8 +230,7 @@ class Machine {
           return {known.stitch};
     user_error(
         "{}:{}: {} loops on needle {} are {}; what can be read is k2tog, ssk, k3tog, k3togtbl, sk2p and cdd on the "
-        "front "
-        "bed, p2tog and ssp on the back bed",
+        "front bed, p2tog and ssp on the back bed",
         file_, pass.line, loops.size(), needle_text(needle),
         !worked ? "left alone"
         : tucks ? "tucked"
@@ -260,11 +258,19 @@ class Machine {
     size_t k = i;
     while (k < needles.size() && only(k) && only(k)->wale == first->wale + int(k - i)) ++k;
     out.right = int(k - i);
-    const Held* other = k < needles.size() ? only(k) : nullptr;
+    const size_t middle = k;
     for (int n = 0; n < out.left; ++n, ++k)
       if (k >= needles.size() || !only(k) || only(k)->wale != taken + n) crossed(needles[i], pass);
-    if (!other || out.right < 1) crossed(needles[i], pass);
-    out.left_in_front = other->arrival < first->arrival;
+    // One block lies in front of the other where all of it came first; else their strands are interleaved.
+    const auto arrivals = [&](size_t from, size_t to) {
+      const auto [least, most] =
+          std::minmax_element(needles.begin() + std::ptrdiff_t(from), needles.begin() + std::ptrdiff_t(to),
+                              [&](Needle a, Needle b) { return held_[a][0].arrival < held_[b][0].arrival; });
+      return std::pair(held_[*least][0].arrival, held_[*most][0].arrival);
+    };
+    const auto right = arrivals(i, middle), left = arrivals(middle, k);
+    out.left_in_front = left.second < right.first;
+    if (!out.left_in_front && !(right.second < left.first)) crossed(needles[i], pass);
     taken += out.left + out.right;
     row.cells.push_back(out);
     return k - i;

@@ -45,6 +45,18 @@ const char* name_of(const ChartCell& cell) {
   return cell.stitch == Stitch::cable ? "this cable" : is_decrease(cell.stitch) ? "this decrease" : "this stitch";
 }
 
+// Rows do not match where one of these words was meant as single stitches.
+std::string hint_at_blanks(const ChartRow& row, const ChartRow& below) {
+  for (const ChartRow* read : {&row, &below})
+    for (const ChartCell& cell : read->cells)
+      if (!cell.apart.empty()) {
+        std::string word(cell.apart);
+        std::erase(word, ' ');
+        return fmt::format("; {} is one decrease, single stitches are written with blanks: {}", word, cell.apart);
+      }
+  return "";
+}
+
 std::string cell_text(const ChartCell& cell) {
   switch (cell.stitch) {
     case Stitch::knit:
@@ -108,10 +120,11 @@ std::span<const int> taken_order(Stitch stitch) {
 
 // The first word of a stitch is that of chart_lines().
 std::span<const StitchWord> stitch_words() {
-  static constexpr StitchWord kWords[] = {
-      {"k2tog", Stitch::k2tog}, {"ssk", Stitch::ssk},           {"p2tog", Stitch::p2tog}, {"ssp", Stitch::ssp},
-      {"k3tog", Stitch::k3tog}, {"k3togtbl", Stitch::k3togtbl}, {"sk2p", Stitch::sk2p},   {"cdd", Stitch::cdd},
-      {"s2kp", Stitch::cdd},    {"yo", Stitch::yarn_over}};
+  static constexpr StitchWord kWords[] = {{"k2tog", Stitch::k2tog},         {"ssk", Stitch::ssk, "s s k"},
+                                          {"p2tog", Stitch::p2tog},         {"ssp", Stitch::ssp, "s s p"},
+                                          {"k3tog", Stitch::k3tog},         {"k3togtbl", Stitch::k3togtbl},
+                                          {"sk2p", Stitch::sk2p, "s k2 p"}, {"cdd", Stitch::cdd},
+                                          {"s2kp", Stitch::cdd, "s2 k p"},  {"yo", Stitch::yarn_over}};
   return kWords;
 }
 
@@ -176,15 +189,15 @@ void check_chart(const StitchChart& chart, const std::filesystem::path& file) {
     int left = there;
     for (const ChartCell& cell : row.cells) {
       if (cell.takes() > left)
-        user_error("{}:{}: {} takes {} loops, but of the {} of the row below ({}) {} are left", row.where, cell.column,
-                   name_of(cell), cell.takes(), there, below.where, left);
+        user_error("{}:{}: {} takes {} loops, but of the {} of the row below ({}) {} are left{}", row.where,
+                   cell.column, name_of(cell), cell.takes(), there, below.where, left, hint_at_blanks(row, below));
       if (cell.takes() > kWidestCable)
         user_error("{}:{}: a cable over {} loops; valid: up to {}", row.where, cell.column, cell.takes(), kWidestCable);
       left -= cell.takes();
     }
     if (left > 0)
-      user_error("{}:{}: this row takes {} of the {} loops of the row below ({})", row.where, row.cells.back().column,
-                 there - left, there, below.where);
+      user_error("{}:{}: this row takes {} of the {} loops of the row below ({}){}", row.where, row.cells.back().column,
+                 there - left, there, below.where, hint_at_blanks(row, below));
     if (std::all_of(row.cells.begin(), row.cells.end(), [](const ChartCell& c) { return c.slips(); }))
       user_error("{}:{}: every stitch of this row is slipped, and its yarn is held by none", row.where,
                  row.cells.front().column);
@@ -193,8 +206,9 @@ void check_chart(const StitchChart& chart, const std::filesystem::path& file) {
     if (row.makes() != chart.wales())
       user_error(
           "{}:{}: this row ends with {} loops, the one knitted first ({}) with {}; every yarn over needs a decrease in "
-          "the same row",
-          row.where, row.cells.back().column, row.makes(), chart.rows.front().where, chart.wales());
+          "the same row{}",
+          row.where, row.cells.back().column, row.makes(), chart.rows.front().where, chart.wales(),
+          hint_at_blanks(row, row));
   if (size_t(chart.wales()) * chart.rows.size() > size_t(kMostStitches))
     user_error("{}: {} x {} stitches; a tile has at most {}", file.string(), chart.wales(), chart.rows.size(),
                kMostStitches);
@@ -209,7 +223,23 @@ std::vector<std::string> chart_lines(const StitchChart& chart) {
                                  : fmt::format("yarn {}:", yarn.letter));
   for (auto row = chart.rows.rbegin(); row != chart.rows.rend(); ++row) {
     std::string line;
-    for (const ChartCell& cell : row->cells) line += cell_text(cell);
+    std::string run;  // of symbols
+    const auto end_run = [&] {
+      const bool reads_as_word =
+          std::ranges::any_of(stitch_words(), [&](const StitchWord& known) { return known.word == run; });
+      for (const char symbol : run) line.append(reads_as_word ? " " : "").push_back(symbol);
+      run.clear();
+    };
+    for (const ChartCell& cell : row->cells) {
+      const std::string text = cell_text(cell);
+      if (text.size() == 1) {
+        run += text;
+        continue;
+      }
+      end_run();
+      line += text;
+    }
+    end_run();
     line = std::string(trimmed(line));
     if (chart.yarns.size() > 1) {
       line += " | ";

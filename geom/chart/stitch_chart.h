@@ -43,6 +43,7 @@ inline bool pulls_to_front(Stitch stitch) {
 struct StitchWord {
   std::string_view word;
   Stitch stitch;
+  std::string_view apart = {};  ///< where its characters are symbols too, those with blanks between
 };
 std::span<const StitchWord> stitch_words();
 
@@ -52,6 +53,7 @@ struct ChartCell {
   int left = 0, right = 0;    ///< cable: loops that stand left and right of each other and change places
   bool left_in_front = true;  ///< cable: the left ones go in front (to the right)
   int column = 0;             ///< where it stands in the file's row, from 1, for messages
+  std::string_view apart = {};     ///< StitchWord::apart of the word that it was written as, for messages
   int takes() const {
     return stitch == Stitch::yarn_over ? 0
            : stitch == Stitch::cable   ? left + right

@@ -29,12 +29,14 @@ size_t zero_of(const std::vector<double>& strains, const char* along) {
   return size_t(found - strains.begin());
 }
 
-// Brings the period to that of the strain in affine steps that let no yarn pass another; as far as that goes.
-void strain_tile(PeriodicYarns& yarns, const dvec2& period, const RelaxSettings& settings) {
+// Brings the period to that of the strain in affine steps that let no yarn pass another; as far as that goes,
+// and as long as `go_on` says so.
+void strain_tile(PeriodicYarns& yarns, const dvec2& period, const RelaxSettings& settings,
+                 const std::function<bool()>& go_on) {
   constexpr int kSteps = 100;
   const double reach = 4 * yarns.radius;
   const std::vector<YarnSegment> segments = segments_of(yarns);
-  for (int i = 0; i < kSteps && std::chrono::steady_clock::now() < settings.until; ++i) {
+  for (int i = 0; i < kSteps && std::chrono::steady_clock::now() < settings.until && go_on(); ++i) {
     TileStep step;
     step.points.assign(yarns.points.size(), dvec3(0.0));
     step.strain = period / yarns.period - 1.0;
@@ -81,7 +83,8 @@ RelaxedStrains relax_strains(const PeriodicYarns& relaxed, const RelaxSettings& 
     RelaxSettings own = held;
     own.path += node(ic, iw);
     if (own.watch) own.watch(own.path, in_diameters(shape));
-    strain_tile(shape, relaxed.period * (1.0 + strain), own);
+    strain_tile(shape, relaxed.period * (1.0 + strain), own, [&] { return go_on(0, 0); });
+    if (!go_on(0, 0)) return;
     out.reached[node(ic, iw)] = relax(shape, own, go_on);
     const std::lock_guard lock(telling);
     ++done;

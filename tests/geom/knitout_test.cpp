@@ -137,6 +137,30 @@ TEST(Knitout, Cable) {
   EXPECT_EQ(cables, 1u);
 }
 
+// Their loops come back in turn: each strand lies in front of some of the others and behind some, and no symbol says
+// so.
+TEST(Knitout, InterleavedStrandsAreNoCable) {
+  const auto cable = [](const std::vector<int>& order) {  // of the loops that come back, 1 and 2 from the left
+    return swatch(24, knit, [&](int row) {
+      std::string out;
+      if (row % 4 != 0) return out;
+      for (int i = 1; i + 5 <= kNeedles; i += 6) {
+        for (int k = 1; k <= 4; ++k) out += fmt::format("xfer f{} b{}\n", i + k, i + k);
+        for (const int k : order) {
+          const int by = k <= 2 ? 2 : -2;
+          out += fmt::format("rack {}\nxfer b{} f{}\n", by, i + k, i + k + by);
+        }
+        out += "rack 0\n";
+      }
+      return out;
+    });
+  };
+  EXPECT_EQ(chart_lines(read(cable({2, 1, 4, 3}))), chart_lines(read(cable({1, 2, 3, 4}))));
+  EXPECT_NE(chart_lines(read(cable({3, 4, 1, 2}))), chart_lines(read(cable({1, 2, 3, 4}))));
+  for (const std::vector<int>& order : {std::vector<int>{1, 3, 2, 4}, {1, 3, 4, 2}, {3, 1, 2, 4}})
+    refused(cable(order), {"s.knitout:", "moved across others in a way that is neither a decrease nor a cable"});
+}
+
 // Neighbours on both sides move onto one needle.
 TEST(Knitout, DoubleDecreases) {
   const auto lace = [](bool right_first, bool middle_last) {

@@ -1,6 +1,6 @@
 // A chart relaxed beside the tile of the same pattern that Sperl et al. 2020 (MADYPG) simulated, with its yarn and its
 // loop length. Their cartridge-belt rib, of segments of 0.47 D, is not at rest here: it moves by 0.67 yarn radii with
-// segments of 0.45 D and by 0.94 with half of that. What it moves to is what the chart relaxes into.
+// segments of 0.45 D and by 0.95 with half of that. What it moves to is what the chart relaxes into.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -140,6 +140,20 @@ TEST(Relax, YarnThatOnlyStretchesIsJammed) {
   EXPECT_LT(longer.strain, 0.001);
 }
 
+// Whoever stops it does not wait until the yarns have been brought to the next strain.
+TEST(RelaxStrains, StopsWhileTheClothIsStrained) {
+  constexpr size_t kStretched = 1;  // path of the shape at +400 %
+  int rounds = 0;
+  RelaxSettings settings;
+  settings.watch = [&](size_t path, const PeriodicYarns&) { rounds += path == kStretched; };
+  const auto stop_after = [&](int most) {
+    rounds = 0;
+    return relax_strains(relaxed("k").yarns, settings, {0, 4}, {0}, 1, [&](double) { return rounds < most; }).stopped;
+  };
+  EXPECT_TRUE(stop_after(3));
+  EXPECT_EQ(rounds, 3);
+}
+
 TEST(RelaxStrains, LoopsOpenBeforeTheYarnStretches) {
   const PeriodicYarns& y = relaxed("k").yarns;
   const RelaxedStrains one = relax_strains(y, {}, {-0.2, 0, 0.5}, {0, 0.25}, 1);

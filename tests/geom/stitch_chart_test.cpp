@@ -47,7 +47,12 @@ TEST(StitchChart, Decreases) {
   // Words, and what they are with blanks.
   EXPECT_EQ(chart_lines(text("o sk2p o o s2kp o\n")), (Lines{"o sk2p oo cdd o"}));
   EXPECT_EQ(chart_lines(text("s k2 p\nk4\n")), (Lines{"skkp", "kkkk"}));
-  refused("k4\nsk2p\n", {"c.chart:2:1: this row takes 3 of the 4"});
+  const Lines hint = {"sk2p is one decrease, single stitches are written with blanks: s k2 p"};
+  refused("k4\nsk2p\n", {"c.chart:2:1: this row takes 3 of the 4", hint[0]});
+  refused("k2\nsk2p\n", {"c.chart:2:1: this decrease takes 3 loops", hint[0]});
+  refused("sk2p\nk3\n", {"c.chart:2:1: this stitch takes 1 loops", hint[0]});
+  refused("k3\nssk\n", {"c.chart:2:1: this row takes 2 of the 3", "ssk is one decrease", "with blanks: s s k"});
+  refused("k4\ns2kp\n", {"with blanks: s2 k p"});
 }
 
 TEST(StitchChart, YarnsOfStitches) {
@@ -80,6 +85,31 @@ TEST(StitchChart, LinesReadBack) {
   std::string again;
   for (const std::string& line : chart_lines(chart)) again += line + "\n";
   EXPECT_EQ(chart_lines(text(again)), chart_lines(chart));
+}
+
+// Two or three symbols side by side may spell the word of another stitch.
+TEST(StitchChart, EveryTripleReadsBack) {
+  std::vector<ChartCell> symbols;
+  for (int s = int(Stitch::knit); s < int(Stitch::cable); ++s) symbols.push_back({Stitch(s)});
+  symbols.push_back({Stitch::cable, 2, 1});
+  const auto same = [](const ChartCell& a, const ChartCell& b) {
+    return a.stitch == b.stitch && a.left == b.left && a.right == b.right && a.left_in_front == b.left_in_front;
+  };
+  const auto reads_back = [&](const std::vector<ChartCell>& cells) {
+    StitchChart chart;
+    chart.yarns = {{}};
+    chart.rows = {{cells, {}, ""}};
+    const std::string line = chart_lines(chart)[0];
+    EXPECT_TRUE(std::ranges::equal(parse_chart_text(line, "c").rows[0].cells, cells, same)) << line;
+  };
+  for (const ChartCell& a : symbols)
+    for (const ChartCell& b : symbols) {
+      reads_back({a, b});
+      for (const ChartCell& c : symbols) {
+        reads_back({a, b, c});
+        reads_back({symbols.back(), a, b, c, symbols.back()});
+      }
+    }
 }
 
 TEST(StitchChart, MarkOfUtf8IsNoStitch) { EXPECT_EQ(text("\xef\xbb\xbfkp\n").wales(), 2); }
@@ -152,8 +182,6 @@ TEST(StitchChart, BadJson) {
   json_refused("[[\"k\", \"q\"]]", {"c.json: row 1:2:1", "\"q\" is no stitch"});
   json_refused("[[\"k k\"]]", {"c.json: row 1:1", "not one word"});
   json_refused("[\"kkk\", [\"k\", \"k\", \"k2tog\"]]", {"c.json: row 2:3: this decrease takes 2"});
-  json_refused("[{\"stitches\": \"kk\", \"yarns\": \"abc\"}]", {"c.json: row 1:", "more than the 2"});
-  json_refused("[{\"stitches\": \"kkk\", \"yarns\": [\"a\", \"b\"]}]", {"c.json: row 1:", "mid-air"});
   json_refused("[{\"stiches\": \"kk\"}]", {"c.json: row 1: unknown key 'stiches'"});
   json_refused("[7]", {"c.json: row 1: an object is expected"});
   json_refused("[\"k\", [\"k\", 7]]", {"c.json: row 2:2: a text is expected"});
@@ -166,6 +194,23 @@ TEST(StitchChart, BadJson) {
   expect_user_error([] { json(R"({"wale_chart": 2, "rows": ["k"]})"); }, {"only version 1"});
   expect_user_error([] { json(R"({"wale_chart": 1, "yarns": {"a": "red"}, "rows": ["k"]})"); }, {"yarns.a", "#rrggbb"});
   expect_user_error([] { json(R"({"wale_chart": 1, "yarns": {"ab": null}, "rows": ["k"]})"); }, {"yarns.ab", "letter"});
+}
+
+// Not those of the text that stitches and yarns would be together.
+TEST(StitchChart, JsonNamesTheYarnThatIsWrong) {
+  const auto yarns = [](const std::string& rows, const std::string& wanted) {
+    expect_user_error(
+        [&] { json(R"({"wale_chart": 1, "yarns": {"a": null, "b": null}, "rows": ["kk", )" + rows + "]}"); }, {wanted});
+  };
+  yarns(R"({"stitches": ["k", "k"], "yarns": ["a", "q"]})", "c.json: row 2, yarns:2: no yarn is called q");
+  yarns(R"({"stitches": "kk", "yarns": "aq"})", "c.json: row 2, yarns:2: no yarn is called q");
+  yarns(R"({"stitches": "kk", "yarns": ["a", "B"]})", "c.json: row 2, yarns:2: 'B' is no yarn");
+  yarns(R"({"stitches": ["k", "k"], "yarns": "a ab"})", "c.json: row 2, yarns:4: yarns for more than the 2");
+  yarns(R"({"stitches": "kk", "yarns": ["a", "a", "b2"]})", "c.json: row 2, yarns:3: yarns for more than the 2");
+  yarns(R"({"stitches": "kkk", "yarns": ["a", "b"]})", "c.json: row 2, yarns:2: yarn b ends in mid-air: 2 of 3");
+  yarns(R"({"stitches": ["k", "k", "k"], "yarns": "a b"})", "c.json: row 2, yarns:3: yarn b ends in mid-air");
+  yarns(R"({"stitches": "kk", "yarns": ["a", "b0"]})", "c.json: row 2, yarns:2: a stitch is repeated");
+  yarns(R"({"stitches": "kk", "yarns": []})", "c.json: row 2, yarns:1: no yarn");
 }
 
 // Loops: where each one is taken, what lies in front.

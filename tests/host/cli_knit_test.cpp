@@ -66,7 +66,7 @@ TEST_F(CliKnit, AGaugeThatNoLoopGivesEndsSoon) {
   const auto start = std::chrono::steady_clock::now();
   for (const char* asked : {"--wales", "--courses"}) {
     const std::string line = knit_refused(chart("k\n"), {asked, "150", "--quiet"});
-    EXPECT_TRUE(contains(line, "no loop length gives this gauge; the nearest is 26.")) << line;
+    EXPECT_TRUE(contains(line, "no loop length gives this gauge, nothing is written; the nearest is 26.")) << line;
     EXPECT_TRUE(contains(line, "--loop 12.")) << line << ": shorter ones fit only where the yarn stretches";
   }
   // The first loop length that is tried jams, and the next is far too long.
@@ -129,6 +129,13 @@ TEST_F(CliKnit, AHeldPeriodThatStretchesTheYarnIsRefusedWithTheNearestThatHolds)
     EXPECT_EQ(run.status, 0) << asked << " -> " << period << ": " << run.err;
     EXPECT_LE(report()["strain"].get<double>(), 0.03) << period;
   }
+}
+
+// The table of strains is not relaxed for the advice.
+TEST_F(CliKnit, TheNearestPeriodIsSaidToBeWithoutStrains) {
+  const std::string line = knit_refused(chart("k\n"), {"--starts", "1", "--period", "6x3", "--strains", "--quiet"});
+  EXPECT_TRUE(contains(line, "the nearest that holds without --strains, on the way to the free one, is --period "))
+      << line;
 }
 
 // Rows of nothing but tucks put two yarns through every loop: 13.2 diameters of yarn do not go round them. From a jam
@@ -213,6 +220,10 @@ TEST_F(CliKnit, SettingsOutOfProportion) {
   EXPECT_TRUE(contains(knit_refused(file, {"--period", "90000x2"}),
                        "the yarn of this loop length does not reach; valid: up to 13.2 x 6.6 mm"));
   EXPECT_TRUE(contains(knit_refused(file, {"--period", "4x7"}), "does not reach"));
+  for (const char* pull : {"--blocking", "--course-tension", "--wale-tension"})
+    EXPECT_TRUE(contains(knit_refused(file, {"--period", "4.3x2", pull, "0.5"}),
+                         "a period that is held is not pulled at; leave it out, or blocking and tension"))
+        << pull;
   EXPECT_TRUE(contains(knit_refused(file, {"--wales", "20", "--courses", "30"}), "ask for one of them"));
   EXPECT_TRUE(contains(knit_refused(file, {"--loop", "12", "--wales", "20"}), "ask for one of them"));
 }

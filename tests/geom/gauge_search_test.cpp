@@ -1,0 +1,85 @@
+// The search for a loop length, among fabrics of which it is known how the relaxation of each length ends.
+#include "geom/chart/gauge_search.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <vector>
+
+namespace wale {
+namespace {
+
+struct Search {
+  KnittedTile found;
+  std::vector<double> lengths;  // that were tried, in yarn diameters
+};
+
+// A fabric of 3.3 / L wales per yarn diameter at a loop of L diameters. `wanted`: loop length whose gauge is asked for.
+Search search(double wanted, const std::function<RelaxEnd(double length, int tries)>& end_of_try) {
+  Search out;
+  KnitSettings settings;
+  const auto wales = [&](double length) { return 3.3 / length / settings.yarn_thickness; };
+  settings.wales = wales(wanted);
+  out.found = knit_to_gauge(settings,
+                            [&](double length, const KnitSettings&, const auto&) {
+                              out.lengths.push_back(length);
+                              KnittedTile tile;
+                              tile.relaxed.end = end_of_try(length, int(out.lengths.size()));
+                              tile.relaxed.converged = tile.relaxed.end == RelaxEnd::at_rest;
+                              tile.loop_length = length * settings.yarn_thickness;
+                              tile.gauge =
+                                  dvec2(wales(length) * (length > 15 ? 0.97 : 1), 1000);  // not quite in proportion
+                              return tile;
+                            },
+                            {});
+  return out;
+}
+
+// One that is longer than a loop that came to rest is no reason to look no further below it.
+TEST(GaugeSearch, ALongLoopThatFailsForbidsNoShorterOne) {
+  for (const RelaxEnd end : {RelaxEnd::steps, RelaxEnd::stuck}) {
+    // The gauge of 16.49 diameters is that of 17 in proportion, which fails.
+    const Search s = search(17, [&](double length, int) { return length > 16.8 ? end : RelaxEnd::at_rest; });
+    EXPECT_EQ(s.found.gauge_end, GaugeEnd::reached) << int(end);
+    EXPECT_NEAR(s.found.loop_length, 16.49e-3, 0.1e-3);
+    EXPECT_LE(s.lengths.size(), 6u);
+  }
+}
+
+// And where the gauge lies beyond it, the search ends, with the reason.
+TEST(GaugeSearch, WhatLiesBeyondALoopThatFailsIsNotFound) {
+  for (const auto& [end, why] : {std::pair{RelaxEnd::steps, GaugeEnd::steps}, {RelaxEnd::stuck, GaugeEnd::stuck}}) {
+    const Search s = search(25, [&](double length, int) { return length > 16.8 ? end : RelaxEnd::at_rest; });
+    EXPECT_EQ(s.found.gauge_end, why);
+    EXPECT_TRUE(s.found.relaxed.converged) << "the nearest";
+    EXPECT_GT(s.found.loop_length, 16e-3);
+  }
+}
+
+// The shortest that does not jam is looked for from both sides.
+TEST(GaugeSearch, JamsBoundItFromBelow) {
+  const Search s = search(9, [](double length, int) { return length < 12 ? RelaxEnd::jammed : RelaxEnd::at_rest; });
+  EXPECT_EQ(s.found.gauge_end, GaugeEnd::none);
+  EXPECT_NEAR(s.found.loop_length, 12.2e-3, 0.3e-3);
+}
+
+// Nothing is known of the gauge but how near the first one came.
+TEST(GaugeSearch, TimeThatEndsItIsSaid) {
+  const Search s = search(16, [](double, int tries) { return tries == 2 ? RelaxEnd::time : RelaxEnd::at_rest; });
+  EXPECT_TRUE(s.found.relaxed.converged) << "the nearest";
+  EXPECT_EQ(s.found.gauge_end, GaugeEnd::time);
+  EXPECT_EQ(s.found.tries, 2);
+}
+
+// The first jams, and what ended the second is why there is nothing.
+TEST(GaugeSearch, OfLoopsThatAllFailedTheLastIsKept) {
+  for (const auto& [end, why] : {std::pair{RelaxEnd::time, GaugeEnd::time}, {RelaxEnd::steps, GaugeEnd::steps}}) {
+    const Search s = search(16, [&](double, int tries) { return tries == 1 ? RelaxEnd::jammed : end; });
+    EXPECT_FALSE(s.found.relaxed.converged);
+    EXPECT_EQ(s.found.gauge_end, why);
+    EXPECT_EQ(s.found.relaxed.end, end);
+  }
+}
+
+}  // namespace
+}  // namespace wale
