@@ -70,10 +70,11 @@ class LeftBehind {
  public:
   void remove(const fs::path& folder, const fs::path& file) {
     const std::lock_guard lock(mutex_);
-    const auto [known, is_new] = folders_.try_emplace(fs::absolute(folder).lexically_normal());
+    std::error_code ignored;
+    const fs::path full = fs::absolute(folder, ignored);  // fails where the working folder has gone
+    const auto [known, is_new] = folders_.try_emplace((ignored ? folder : full).lexically_normal());
     if (is_new) known->second = look_through(folder);
     const auto [first, last] = known->second.equal_range(file.filename().string());
-    std::error_code ignored;
     for (auto at = first; at != last; ++at)
       if (!is_alive(at->second.first)) fs::remove(at->second.second, ignored);
     known->second.erase(first, last);

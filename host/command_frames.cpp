@@ -206,7 +206,11 @@ class Frames {
 
   // False when it was stopped.
   bool render(Frame& frame, RenderOptions options, const std::function<void(double)>& show) {
-    Scene scene = scene_at(frame.at);
+    // Before anything of it is read: of a file that changes meanwhile it has the old name, and no run keeps it.
+    if (!args_.frames.empty() && frame.identity.empty())
+      frame.identity = identity_.of(scene_at(frame.at), overrides(frame.at));
+    const std::string shown = scene_identity(args_.scene, overrides(frame.at));
+    const Scene scene = scene_at(frame.at);
     options.spp = most_samples(args_, scene.integrator);
     const std::vector<double> seen = moments(scene, options.spp);
     FrameStats::Row row{frame.at};
@@ -228,10 +232,8 @@ class Frames {
       show(f);
     });
     if (r.stopped && stop_requested()) return false;
-    // Only now where there was no picture to compare with: the frame's files have just been read.
-    if (!args_.frames.empty() && frame.identity.empty()) frame.identity = identity_.of(scene, overrides(frame.at));
     const auto start = Clock::now();
-    write(frame, scene, options, r);
+    write(frame, scene, shown, options, r);
     row.write_seconds = since(start);
     row.add(r);
     stats_.rows.push_back(row);
@@ -240,11 +242,11 @@ class Frames {
     return true;
   }
 
-  void write(const Frame& frame, const Scene& scene, const RenderOptions& options, const Rendered& r) {
+  void write(const Frame& frame, const Scene& scene, const std::string& shown, const RenderOptions& options,
+             const Rendered& r) {
     Image image = r.image;
     image.figures = sampling_attributes({options.spp, options.error, options.seconds, r.stopped, r.reached});
-    image.attributes = {{kSceneAttribute, scene_identity(args_.scene, overrides(frame.at))},
-                        {kAccuracyAttribute, accuracy_settings(scene)}};
+    image.attributes = {{kSceneAttribute, shown}, {kAccuracyAttribute, accuracy_settings(scene)}};
     if (!frame.identity.empty()) image.attributes[kFrameAttribute] = frame.identity;
     for (const auto& file : frame.files) write_image(image, file, scene.film.exposure, scene.film.view);
   }

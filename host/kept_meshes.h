@@ -11,11 +11,12 @@ namespace wale {
 
 struct Loaders;
 
-/// When a file or a folder was changed last, and how long it is.
+/// Which file or folder a name leads to, when it was changed last, and how long it is.
 struct FileStamp {
   std::filesystem::path file;
   std::filesystem::file_time_type changed{};
-  uintmax_t bytes = 0;
+  uintmax_t bytes = 0, number = 0;
+  bool settled = false;  ///< it was not young then: a later change has another time
   bool operator==(const FileStamp&) const = default;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include "geom/error.h"
 #include "host/schema.h"
@@ -57,11 +58,13 @@ void tell_fractions(const std::vector<JsonNode*>& values) {
     if (!fraction && value->is_number() && value->number != std::floor(value->number))
       fraction = std::make_shared<const JsonNode>(*value);
   for (JsonNode* value : values) value->key_with_fraction = fraction;
-  for (size_t i = 0; i < values[0]->items.size(); ++i) {
-    std::vector<JsonNode*> items;
-    for (JsonNode* value : values) items.push_back(&value->items[i]);
-    tell_fractions(items);
+  // Objects need not have the same members, nor their lists the same length.
+  std::map<std::string, std::vector<JsonNode*>> parts;
+  for (JsonNode* value : values) {
+    for (size_t i = 0; i < value->items.size(); ++i) parts[std::to_string(i)].push_back(&value->items[i]);
+    for (auto& member : value->members) parts[member.key].push_back(&member.value);
   }
+  for (const auto& [name, same] : parts) tell_fractions(same);
 }
 
 // Slope of the cubic at a key: a weighted harmonic mean of the slopes beside it, 0 at an extremum and at both ends.

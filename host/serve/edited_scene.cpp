@@ -111,7 +111,7 @@ void EditedScene::edit(const std::vector<std::string>& set, const std::string& g
     user_error("more than {} values are edited; save the scene and open it anew", kMostEdits);
   auto before = std::make_shared<const Edits>(edits_);
   take(std::move(next));
-  if (gesture.empty() || gesture != gesture_) past_.push_back(std::move(before));
+  if (gesture.empty() || gesture != gesture_) past_.push_back({std::move(before), next_step_});
   if (past_.size() > kMostSteps) past_.erase(past_.begin());
   gesture_ = gesture;
   future_.clear();
@@ -120,9 +120,9 @@ void EditedScene::edit(const std::vector<std::string>& set, const std::string& g
 bool EditedScene::undo() {
   if (past_.empty()) return false;
   auto now = std::make_shared<const Edits>(edits_);
-  take(*past_.back());
+  take(*past_.back().edits);
+  future_.push_back({std::move(now), past_.back().number});
   past_.pop_back();
-  future_.push_back(std::move(now));
   gesture_.clear();
   return true;
 }
@@ -130,9 +130,9 @@ bool EditedScene::undo() {
 bool EditedScene::redo() {
   if (future_.empty()) return false;
   auto now = std::make_shared<const Edits>(edits_);
-  take(*future_.back());
+  take(*future_.back().edits);
+  past_.push_back({std::move(now), future_.back().number});
   future_.pop_back();
-  past_.push_back(std::move(now));
   gesture_.clear();
   return true;
 }
@@ -141,7 +141,7 @@ bool EditedScene::reset() {
   if (edits_.empty()) return false;
   auto now = std::make_shared<const Edits>(edits_);
   take({});
-  past_.push_back(std::move(now));
+  past_.push_back({std::move(now), next_step_});
   future_.clear();
   gesture_.clear();
   return true;

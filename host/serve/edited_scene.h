@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -31,6 +32,11 @@ class EditedScene {
   void edit(const std::vector<std::string>& set, const std::string& gesture);
   bool undo();
   bool redo();
+  /// The step that undo() or redo() would take, by the number that was given before it was first made; 0: none.
+  uint64_t undo_step() const { return past_.empty() ? 0 : past_.back().number; }
+  uint64_t redo_step() const { return future_.empty() ? 0 : future_.back().number; }
+  /// The next new step gets this number.
+  void number_next_step(uint64_t number) { next_step_ = number; }
   /// Takes all edits back, as one step of undo.
   bool reset();
   bool can_undo() const { return !past_.empty(); }
@@ -50,6 +56,10 @@ class EditedScene {
 
  private:
   using Edits = std::vector<std::string>;
+  struct Step {
+    std::shared_ptr<const Edits> edits;  ///< on its other side
+    uint64_t number = 0;
+  };
   void take(Edits edits);
 
   std::filesystem::path file_;
@@ -58,7 +68,8 @@ class EditedScene {
   FileFence fence_;
   Scene opened_, scene_;
   double metres_per_unit_ = 1;
-  std::vector<std::shared_ptr<const Edits>> past_, future_;
+  std::vector<Step> past_, future_;
+  uint64_t next_step_ = 0;
   std::string gesture_;
 };
 

@@ -101,6 +101,11 @@ void EditorSession::confirm(const Version& version) {
   publish_state(false);
 }
 
+bool EditorSession::stopped_for_files() const {
+  const std::lock_guard lock(mutex_);
+  return edits_.stopped();
+}
+
 bool EditorSession::another_pending() const {
   const std::lock_guard lock(mutex_);
   return edits_.pending();
@@ -131,6 +136,7 @@ void EditorSession::run(std::span<const Device> device, const Loaders& loaders,
       if (visible && next.fault.empty() && traced(next.scenes) == traced(version->scenes)) {
         version = std::move(next);
         confirm(*version);
+        visible = !stopped_for_files();
         // As they were seen last: some tiles may have a sample more by now, whose pass has not ended.
         for (size_t v = 0; v < views.count(); ++v)
           if (views.render(v).state().shrink > 0) publish_picture(v, *version, *shown_[v]);
@@ -156,6 +162,7 @@ void EditorSession::run(std::span<const Device> device, const Loaders& loaders,
         framed_ = camera_of(views.world());
       }
       confirm(*version);
+      visible = !stopped_for_files();
       continue;
     }
     if (!visible) {

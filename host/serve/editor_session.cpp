@@ -24,9 +24,9 @@ EditorChange scene_change(const Texts& set, const std::string& gesture, const st
   EditorChange change;
   change.control = control;
   if (!set.empty())
-    change.make = [=](EditorState& state) { state.scene.edit(set, gesture); };
+    change.make = [=](EditorState& state) { return state.scene.edit(set, gesture), true; };
   else
-    change.make = [](EditorState&) {};
+    change.make = [](EditorState&) { return false; };
   if (gesture.empty()) return change;
   change.stroke = gesture;
   for (const std::string& one : set) change.stroke.append(1, '\n').append(one, 0, one.find('='));
@@ -56,11 +56,11 @@ HttpReply EditorSession::handle(const EditorRequest& request) {
     case Kind::camera:
       return changed([&] { return camera_change(request); });
     case Kind::undo:
-      return changed([] { return EditorChange{[](EditorState& state) { state.scene.undo(); }}; });
+      return changed([&] { return undo_of(edits_.newest()); });
     case Kind::redo:
-      return changed([] { return EditorChange{[](EditorState& state) { state.scene.redo(); }}; });
+      return changed([&] { return redo_of(edits_.newest()); });
     case Kind::reset:
-      return changed([] { return EditorChange{[](EditorState& state) { state.scene.reset(); }}; });
+      return changed([] { return EditorChange{[](EditorState& state) { return state.scene.reset(); }}; });
     case Kind::save:
       return save(request);
     case Kind::picture:
@@ -101,9 +101,10 @@ EditorChange EditorSession::control_change(const EditorRequest& request) const {
       std::find_if(controls.begin(), controls.end(), [&](const Control& c) { return c.id == request.control; });
   if (found == controls.end()) user_error("\"{}\": there is no such control", one_line(request.control));
   if (!found->set)
-    return {
-        [control = *found, value = request.value](EditorState& state) { set_setting(state.settings, control, value); },
-        request.control};
+    return {[control = *found, value = request.value](EditorState& state) {
+              return set_setting(state.settings, control, value), true;
+            },
+            request.control};
   return scene_change(overrides_of(*found, request.value), request.gesture, request.control);
 }
 

@@ -62,6 +62,7 @@ class EditorSession {
   HttpReply picture(int view);
   Version next_version();
   bool another_pending() const;
+  bool stopped_for_files() const;
   std::string state_json() const;
   void publish_state(bool now);
   void publish_picture(size_t view, const Version& version, Shown shown);

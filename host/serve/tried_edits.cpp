@@ -1,5 +1,7 @@
 #include "host/serve/tried_edits.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "geom/error.h"
@@ -11,31 +13,36 @@ constexpr size_t kMostChanges = 64;  // of more than these the oldest two count 
 
 }  // namespace
 
-void TriedEdits::Made::make(EditorState& state) const {
-  change.make(state);
-  for (const EditorChange& one : also) one.make(state);
+EditorChange undo_of(const EditorState& now) {
+  return {[step = now.scene.undo_step()](EditorState& state) {
+    return state.scene.undo_step() == step && state.scene.undo();
+  }};
+}
+
+EditorChange redo_of(const EditorState& now) {
+  return {[step = now.scene.redo_step()](EditorState& state) {
+    return state.scene.redo_step() == step && state.scene.redo();
+  }};
 }
 
 TriedEdits::TriedEdits(EditorState opened) : good_(opened), newest_(std::move(opened)) {}
 
 void TriedEdits::change(EditorChange change) {
-  change.make(newest_);
+  newest_.scene.number_next_step(revision_ + 1);
+  if (!change.make(newest_)) return;
   ++revision_;
   refusal_.reset();
   nothing_ = false;
   if (!changes_.empty() && !change.stroke.empty() && change.stroke == changes_.back().change.stroke) {
     if (bad_ == changes_.size()) bad_ = 0;  // it is another change now
-    changes_.back() = {std::move(change), {}, revision_};
+    changes_.back() = {std::move(change), revision_, newest_.scene.undo_step(), newest_};
     return;
   }
-  changes_.push_back({std::move(change), {}, revision_});
+  changes_.push_back({std::move(change), revision_, newest_.scene.undo_step(), newest_});
   if (changes_.size() <= kMostChanges) return;
-  Made second = std::move(changes_[1]);
-  changes_.erase(changes_.begin() + 1);
-  changes_[0].also.push_back(std::move(second.change));
-  changes_[0].also.insert(changes_[0].also.end(), second.also.begin(), second.also.end());
+  changes_.erase(changes_.begin());  // what is first is never made again: where it led is enough
   changes_[0].change.stroke.clear();
-  changes_[0].revision = second.revision;
+  changes_[0].change.control.clear();
   if (bad_ > 0) --bad_;
 }
 
@@ -49,11 +56,9 @@ TriedEdits::Trial TriedEdits::next() {
     tried_ = revision_;
     return {newest_, revision_};
   }
-  Trial trial{good_, good_revision_};
-  if (!good_still_) return trial;
-  for (size_t i = 0; i < bad_ / 2; ++i) changes_[i].make(trial.state);
-  trial.revision = changes_[bad_ / 2 - 1].revision;
-  return trial;
+  if (!good_still_) return {good_, good_revision_};
+  const Made& middle = changes_[bad_ / 2 - 1];
+  return {middle.after, middle.revision};
 }
 
 void TriedEdits::shown(const Trial& trial) {
@@ -86,24 +91,35 @@ void TriedEdits::refused(const Trial& trial, const std::string& line) {
 
 // The first change, as good_ can be shown and good_ with it cannot.
 void TriedEdits::take_back() {
+  bad_ = 0;
+  try {
+    good_.scene.scene_with({});
+  } catch (const Error& error) {  // its files have gone since: then no change could be made again
+    if (error.fault() != Fault::user) throw;
+    nothing_ = true;
+    refusal_ = RefusedEdit{"", error.what()};
+    return;
+  }
   refusal_ = RefusedEdit{changes_[0].change.control, line_};
   const std::vector<Made> rest(std::make_move_iterator(changes_.begin() + 1), std::make_move_iterator(changes_.end()));
   changes_.clear();
   newest_ = good_;
+  size_t gone = 0;
+  std::string why;
   for (const Made& made : rest) {
-    EditorState with = newest_;
+    newest_.scene.number_next_step(made.step);
     try {
-      made.make(with);
+      if (made.change.make(newest_)) changes_.push_back({made.change, made.revision, made.step, newest_});
     } catch (const Error& error) {  // it needs what was taken back
       if (error.fault() != Fault::user) throw;
-      continue;
+      if (gone++ == 0) why = error.what();
     }
-    newest_ = std::move(with);
-    changes_.push_back(made);
   }
+  if (gone > 0)
+    refusal_->line +=
+        fmt::format("; {} after it went with it: {}", gone == 1 ? "one edit" : fmt::format("{} edits", gone), why);
   ++revision_;
   if (changes_.empty()) good_revision_ = revision_;
-  bad_ = 0;
 }
 
 }  // namespace wale

@@ -268,6 +268,17 @@ TEST(AtomicFile, NothingIsLeftWithoutCommit) {
   EXPECT_EQ(file_text(folder / "a.txt"), "new");
 }
 
+TEST(AtomicFile, AWorkingFolderThatHasGoneIsTheUsersError) {
+  const auto before = std::filesystem::current_path();
+  {
+    TemporaryFolder folder;
+    std::filesystem::current_path(folder.path());
+  }
+  const std::string line = user_message([] { AtomicFile("a.txt"); });
+  std::filesystem::current_path(before);
+  EXPECT_EQ(line, "a.txt: the folder . cannot be written");
+}
+
 // What a writer that was killed has left goes with the next writing of the same file; all else stays.
 TEST(AtomicFile, WhatAKilledWriterLeftIsRemovedByTheNext) {
   TemporaryFolder folder;

@@ -21,15 +21,21 @@ class KeptMeshesOfAScene : public testing::Test {
       "objects": [{"type": "mesh", "mesh": "still.obj"}, {"type": "mesh", "mesh": {"frames": "prop_#.obj"}},
                   {"type": "sphere", "radius": 0.1}],
       "lights": [{"type": "mesh", "mesh": {"frames": "lamp_#.obj", "missing": "hold"}}]})");
+    age(folder_.path());
     edited({});
   }
   void write(const std::string& name, double z) {
     BaseMesh mesh = make_swatch(0.01, 0.01, 2, 2);
     for (dvec3& p : mesh.position) p.z = z;
     write_obj(mesh, folder_ / name);
-    // Not within the resolution of a file's time.
-    std::filesystem::last_write_time(folder_ / name,
-                                     std::filesystem::file_time_type::clock::now() + std::chrono::seconds(++written_));
+    ++written_;
+    age(folder_ / name);
+    age(folder_.path());
+  }
+  // Each a second after the one before, and long ago.
+  void age(const std::filesystem::path& file) {
+    std::filesystem::last_write_time(
+        file, std::filesystem::file_time_type::clock::now() + std::chrono::seconds(written_ - 1000));
   }
   /// Files that another version reads.
   std::string edited(const std::vector<std::string>& set) {
@@ -79,6 +85,35 @@ TEST_F(KeptMeshesOfAScene, AreReadAgainWhereTheirFileHasChanged) {
   EXPECT_EQ(edited({}), "") << "not of this frame";
   folder_.write("still.obj", "no mesh");
   EXPECT_NE(user_message([&] { edited({}); }).find("still.obj"), std::string::npos);
+}
+
+// Its time and its length are as they were: the clock of files goes in steps.
+TEST_F(KeptMeshesOfAScene, AreReadAgainWhereTheirFileWasYoung) {
+  const std::filesystem::path file = folder_ / "still.obj";
+  write("still.obj", 0.001);
+  const auto bytes = std::filesystem::file_size(file);
+  const auto young = std::filesystem::file_time_type::clock::now();
+  std::filesystem::last_write_time(file, young);
+  EXPECT_EQ(edited({}), "1 still.obj");
+  const std::vector<float> triangles = world_.triangles;
+  write("still.obj", 0.002);
+  ASSERT_EQ(std::filesystem::file_size(file), bytes);
+  std::filesystem::last_write_time(file, young);
+  EXPECT_EQ(edited({}), "1 still.obj");
+  EXPECT_NE(world_.triangles, triangles);
+}
+
+TEST_F(KeptMeshesOfAScene, AreReadAgainWhereAnotherFileHasTheName) {
+  const std::filesystem::path file = folder_ / "still.obj", other = folder_ / "other.obj";
+  write("still.obj", 0.001);
+  write("other.obj", 0.002);
+  EXPECT_EQ(edited({"objects.2.radius=0.2"}).find("still.obj") != std::string::npos, true);
+  ASSERT_EQ(std::filesystem::file_size(file), std::filesystem::file_size(other));
+  const auto time = std::filesystem::last_write_time(file);
+  std::filesystem::rename(other, file);
+  std::filesystem::last_write_time(file, time);
+  age(folder_.path());
+  EXPECT_EQ(edited({}), "1 still.obj");
 }
 
 // A frame that was held may be there now; what is said of it is said again.

@@ -143,6 +143,10 @@ TEST(AnimatedScene, AKeyOfAWholeNumberHasNoFraction) {
               "scene.json:1:122: film.size.1: a whole number is needed here, not the number 8.5");
     EXPECT_EQ(line(R"("integrator.lanes": [[0, 1, "hold"], [50, 8.5]])"),
               "scene.json:1:129: integrator.lanes: the number 8.5 is not valid; valid: 0, 1, 8, 16");
+    EXPECT_NE(line(R"("fabrics.cloth.yarn": [[0, {"plies": 2}], [5, {"plies": 3}], [200, {"plies": 2.5}]])")
+                  .find("fabrics.0.yarn.plies: a whole number is needed here, not the number 2.5"),
+              std::string::npos)
+        << frame;
     EXPECT_NO_THROW(scene(R"({"keys": {"camera.fov": [[0, 20], [5, 20.5], [10, 21]]}})", set));
   }
 }

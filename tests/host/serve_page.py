@@ -421,6 +421,14 @@ def main():
         turn("camera.fov", 25)
         wait(f"!{say}.includes('topped') && !{say}.includes('prop.obj')", "that it goes on")
         expect(not page.run("[...document.querySelectorAll('.error')].some(e => e.textContent)"), "no control is to blame")
+        # the state and the status come in either order
+        line = {"control": "", "line": "a file has gone"}
+        parts = [f"showFault({json.dumps(line)})",
+                 "showCost({status: 'stopped', samples: 0, error: 0, goal: 1, segments: 0, edit_seconds: 0})"]
+        for order in (parts, parts[::-1]):
+            text = page.run("(() => { const was = [lastStatus, told]; lastStatus = 'rendering'; told = null; " + "; ".join(order) +
+                            f"; const text = {say}; [lastStatus, told] = was; sayStatus(); return text; }})()")
+            expect(text == "Stopped until the next edit: a file has gone", f"stopped, and why: {text}")
         turn("view.lit", "scene")
         expect("#40a060" in page.run("document.getElementById('command').textContent"), "the command line holds the edit")
         page.run("document.getElementById('file').value = 'page_saved.json'; document.getElementById('save').click()")

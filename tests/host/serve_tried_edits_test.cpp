@@ -30,14 +30,10 @@ struct ServeTriedEdits : testing::Test {
   std::string now() const { return text_of(edits.newest()); }
 
   void edit(const std::string& set, const std::string& stroke = "") {
-    edits.change({[=](EditorState& state) { state.scene.edit({set}, stroke); }, "of " + set, stroke});
+    edits.change({[=](EditorState& state) { return state.scene.edit({set}, stroke), true; }, "of " + set, stroke});
   }
-  void undo() {
-    edits.change({[](EditorState& state) { state.scene.undo(); }});
-  }
-  void redo() {
-    edits.change({[](EditorState& state) { state.scene.redo(); }});
-  }
+  void undo() { edits.change(undo_of(edits.newest())); }
+  void redo() { edits.change(redo_of(edits.newest())); }
   bool try_one() {
     if (!edits.pending()) return false;
     const TriedEdits::Trial trial = edits.next();
@@ -83,7 +79,7 @@ TEST_F(ServeTriedEdits, ThoseThatAreBadAmongManyGoBackAlone) {
   try_all();
   for (const std::set<int>& wrong : {std::set<int>{0}, {7}, {15}, {0, 1}, {3, 12}, {14, 15}, {5, 6, 7, 8}}) {
     bad.clear(), trials.clear();
-    edits.change({[](EditorState& state) { state.scene.reset(); }});
+    edits.change({[](EditorState& state) { return state.scene.reset(); }});
     try_all();
     const size_t before = trials.size();
     std::vector<std::string> good;
@@ -228,6 +224,144 @@ TEST_F(ServeTriedEdits, OfVeryManyTheOldestGoBackTogether) {
   try_all();
   EXPECT_EQ(edits.newest().scene.edits().size(), 63u);
   EXPECT_NE(refusal(), "");
+}
+
+TEST_F(ServeTriedEdits, AnUndoOfWhatIsTakenBackGoesWithIt) {
+  try_all();
+  bad = {"camera.fov=9", "film.exposure=9"};
+  edit("integrator.seed=3");
+  edit("camera.fov=9");
+  undo();
+  edit("film.exposure=9");
+  edit("camera.up=[1,0,0]");
+  try_all();
+  EXPECT_EQ(now(), "integrator.seed=3 camera.up=[1,0,0]");
+  for (const char* before : {"integrator.seed=3", ""}) {
+    undo();
+    EXPECT_EQ(now(), before);
+  }
+}
+
+TEST_F(ServeTriedEdits, ARedoOfAnUndoThatIsTakenBackGoesWithIt) {
+  for (const char* set : {"film.exposure=1", "film.exposure=2", "camera.fov=30"}) edit(set), try_all();
+  undo(), try_all();
+  bad = {"film.exposure=1", "integrator.seed=9"};
+  undo(), redo();
+  edit("integrator.seed=9");
+  try_all();
+  EXPECT_EQ(now(), "film.exposure=2");
+}
+
+TEST_F(ServeTriedEdits, WhatChangesNothingIsNoVersion) {
+  const uint64_t before = edits.revision();
+  undo(), redo();
+  edits.change({[](EditorState& state) { return state.scene.reset(); }});
+  EXPECT_EQ(edits.revision(), before);
+}
+
+// So many that the oldest count as one while a trial of one of them is under way: none is made twice.
+TEST_F(ServeTriedEdits, ATrialOfWhatHasBecomeOneWithOthers) {
+  for (const char* set : {"camera.fov=30", "film.exposure=1", "film.exposure=2"}) edit(set), try_all();
+  undo();
+  const TriedEdits::Trial trial = edits.next();
+  std::string good = "camera.fov=30 film.exposure=1";
+  for (int i = 0; i < 70; ++i) {
+    edit(fmt::format("materials.m{}={{\"type\":\"ply\"}}", i));
+    if (i < 69) good += fmt::format(" materials.m{}={{\"type\":\"ply\"}}", i);
+  }
+  bad = {"materials.m69={\"type\":\"ply\"}"};
+  edits.shown(trial);
+  try_all();
+  EXPECT_EQ(now(), good);
+  for (int i = 0; i < 69; ++i) undo();
+  EXPECT_EQ(now(), "camera.fov=30 film.exposure=1");
+  redo(), undo(), undo(), undo();
+  EXPECT_EQ(now(), "");
+}
+
+constexpr const char* kProp = R"(objects=[{"type":"mesh","mesh":"prop.obj"}])";
+
+TEST_F(ServeTriedEdits, AFileThatGoesInTheMiddleOfTheSearchIsTheFaultOfItsEdit) {
+  folder.write("prop.obj", "a mesh");
+  try_all();
+  bad = {"film.exposure=9"};
+  edit(kProp), edit("film.exposure=9"), edit("camera.fov=30");
+  try_one();
+  std::filesystem::remove(folder / "prop.obj");
+  bad.insert(kProp);
+  try_all();
+  EXPECT_EQ(now(), "camera.fov=30");
+}
+
+TEST_F(ServeTriedEdits, AFileOfTheGoodVersionThatGoesTakesNoEditsWithIt) {
+  folder.write("prop.obj", "a mesh");
+  edit(kProp);
+  try_all();
+  bad = {"film.exposure=9"};
+  edit("film.exposure=9"), edit("camera.fov=30"), edit("integrator.seed=3");
+  const std::string all = now();
+  try_one(), try_one();
+  std::filesystem::remove(folder / "prop.obj");
+  try_all();
+  EXPECT_EQ(now(), all);
+  EXPECT_TRUE(edits.stopped());
+  EXPECT_TRUE(refusal().starts_with(": ")) << refusal();
+  EXPECT_NE(refusal().find("prop.obj"), std::string::npos) << refusal();
+  folder.write("prop.obj", "a mesh");
+  edit("camera.fov=31");
+  try_all();
+  EXPECT_EQ(now(), std::string(kProp) + " integrator.seed=3 camera.fov=31");
+  EXPECT_FALSE(edits.stopped());
+}
+
+TEST_F(ServeTriedEdits, WhatNeedsTheEditThatIsTakenBackIsTold) {
+  folder.write("prop.obj", "a mesh");
+  try_all();
+  bad = {kProp};
+  edit(kProp), edit("objects.0.transform={\"scale\":2}"), edit("camera.fov=30");
+  try_all();
+  EXPECT_EQ(now(), "camera.fov=30");
+  EXPECT_NE(refusal().find("; one edit after it went with it: --set objects.0.transform"), std::string::npos)
+      << refusal();
+}
+
+// Whenever trials come between: what stays are the edits that are good and not undone.
+TEST_F(ServeTriedEdits, AnyRowLeavesTheEditsThatAreGood) {
+  const TriedEdits opened = edits;
+  test::check_property(300, [&] {
+    edits = opened;
+    bad.clear();
+    std::vector<std::string> made;
+    std::set<std::string> there;
+    const auto listed = [&] {
+      const auto& list = edits.newest().scene.edits();
+      return std::set<std::string>(list.begin(), list.end());
+    };
+    const auto steps = *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 12));
+    for (const int step : steps) {
+      const std::set<std::string> before = listed();
+      if (step < 5) {
+        made.push_back(fmt::format("materials.m{}={{\"type\":\"ply\"}}", made.size()));
+        if (step < 2) bad.insert(made.back());
+        edit(made.back());
+      } else if (step < 9) {
+        step < 7 ? undo() : redo();
+      } else {
+        try_one();
+        continue;
+      }
+      const std::set<std::string> after = listed();
+      for (const std::string& one : before)
+        if (!after.count(one)) there.erase(one);
+      for (const std::string& one : after)
+        if (!before.count(one)) there.insert(one);
+    }
+    try_all();
+    std::vector<std::string> good;
+    for (const std::string& one : made)
+      if (there.count(one) && !bad.count(one)) good.push_back(one);
+    RC_ASSERT(now() == text_of(good));
+  });
 }
 
 // Any row of edits, undo, redo and trials between them ends in a version that can be shown.
