@@ -17,7 +17,7 @@ SCENE = Path(__file__).resolve().parent.parent / "scenes/photo.json"
 HIDDEN = {"type": "ply", "preset": "cotton", "transmit": [0.18, 0.28, 0.60], "reflect": [0.12, 0.20, 0.48],
           "roughness": 12, "optical_radius": 3.2, "fibre_twist": 22}
 START = dict(HIDDEN, transmit=[0.5, 0.5, 0.5], reflect=[0.5, 0.5, 0.5], roughness=20, optical_radius=0.8, fibre_twist=0)
-SIZE = "64x64"
+SIZE = "48x48"
 
 
 def run(*words):
@@ -40,7 +40,7 @@ def main():
     print("|---|---|---|---|---|---|---|")
     for method in ("paths", "differences", "bobyqa"):
         said, seconds = run(wale, "fit", SCENE, "--front", out / "front.exr", "--back", out / "back.exr", "--resolution", 1,
-                            "--method", method, "--starts", 1, "--spp", 32, "--final-spp", 512, "--redo", "-o",
+                            "--method", method, "--starts", 1, "--spp", 32, "--final-spp", 256, "--redo", "-o",
                             out / f"{method}.json", "--set", f"materials.yarn={json.dumps(START)}", "--set",
                             f"film.size=[{SIZE.replace('x', ',')}]")
         value = {m[1]: float(m[2]) for m in re.finditer(r"^([a-z_.]+) ([-+.e0-9]+)", said, re.M)}

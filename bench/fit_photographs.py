@@ -9,8 +9,9 @@ pictures; none of them is kept in the repository, as the photographs' licence wo
 
 The set-up, in units of 10 mm: camera at (0,0,8) over the plane, 53 degrees across; small lamps at (0,8,8) in front and
 (0,0,-9) behind, equally strong. A part of the photograph is what the same camera sees when it is turned to look at the part's
-middle: the four corners of its film, followed to the plane, are the --corners. The weave is a stand-in: a tile of the
-wrong pattern at about the right pitch, so windows are compared, not pixels, and nobody had a grey card: the lamps' strength
+middle: the four corners of its film, followed to the plane, are the --corners. The weave is a stand-in: a tile of another
+pattern, its threads as many a millimetre as peaks in the photograph's spectrum say, turned so that the satin's floats lie across
+the picture, as the upright streak of its highlight wants; so windows are compared, not pixels, and nobody had a grey card: the lamps' strength
 is fitted too (exposure). Thicker yarns than the tile's close its gaps, which the cloths have not.
 """
 import json
@@ -25,8 +26,9 @@ from PIL import Image
 
 SIZE, FOV, HEIGHT, MM = 512, math.radians(53), 8.0, 10.0
 PART, HALF_FOV = 144, math.radians(8.2)  # pixels rendered of a part; half the angle that the turned camera sees
-CLOTHS = {  # tile, threads per tile, mm a thread, by eye
-    "satin1": ("satin.pyp", 5, 0.42), "twill1": ("satin.pyp", 5, 0.42), "twill4": ("basket.pyp", 4, 0.42)}
+CLOTHS = {  # tile, threads per tile, mm a thread across and along the photograph
+    "satin1": ("satin.pyp", 5, (0.245, 0.36)), "twill1": ("satin.pyp", 5, (0.207, 0.443)),
+    "twill4": ("basket.pyp", 4, (0.51, 0.243))}
 # The fit sees the left part; the right one judges it.
 PARTS = {"fitted": (-2.0, 1.0), "unseen": (2.0, 1.0)}
 
@@ -63,9 +65,9 @@ def scene(data, cloth, target):
         "film": {"size": [PART, PART], "filter": "box", "view": "srgb"},
         "materials": {"yarn": {"type": "ply", "preset": "cotton", "reflect": [0.5, 0.5, 0.5], "transmit": [0.5, 0.5, 0.5]}},
         "fabrics": [{"name": "cloth", "mesh": {"generator": "swatch", "width": reach, "height": reach, "nu": 8, "nv": 8},
-                     "transform": {"translate": [target[0] * MM, target[1] * MM, 0]},
+                     "transform": {"rotate": [0, 0, 90], "translate": [target[0] * MM, target[1] * MM, 0]},
                      "pattern": str((data / "yarn-patterns/madypg" / tile).resolve()),
-                     "repeats": [1000 / (threads * pitch)] * 2, "yarn": {"plies": 2, "twist_pitch": 8, "thickness": 1.4}, "material": "yarn"}],
+                     "repeats": [1000 / (threads * p) for p in reversed(pitch)], "yarn": {"plies": 2, "twist_pitch": 8, "thickness": 1.4}, "material": "yarn"}],
         "lights": [dict(lamp, name="front", position=[0, 80, 80]), dict(lamp, name="back", position=[0, 0, -90])]}
 
 
