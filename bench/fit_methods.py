@@ -34,13 +34,13 @@ def main():
     wale, out = Path(sys.argv[1]), Path(sys.argv[2])
     out.mkdir(parents=True, exist_ok=True)
     for side, other in (("front", "back"), ("back", "front")):
-        run(wale, "render", SCENE, "-o", out / f"{side}.exr", "--size", SIZE, "--spp", 1024, "--quiet", "--set",
+        run(wale, "render", SCENE, "-o", out / f"{side}.exr", "--size", SIZE, "--spp", 8192, "--quiet", "--set",
             f"materials.yarn={json.dumps(HIDDEN)}", "--set", f"lights.{other}.radiance=0", "--set", "integrator.seed=900")
     print("| method | renders | processor s | loss | worst colour off by | roughness | optical radius |")
     print("|---|---|---|---|---|---|---|")
     for method in ("paths", "differences", "bobyqa"):
         said, seconds = run(wale, "fit", SCENE, "--front", out / "front.exr", "--back", out / "back.exr", "--resolution", 1,
-                            "--method", method, "--starts", 1, "--spp", 32, "--final-spp", 256, "--redo", "-o",
+                            "--method", method, "--starts", 1, "--spp", 32, "--final-spp", 1024, "--redo", "-o",
                             out / f"{method}.json", "--set", f"materials.yarn={json.dumps(START)}", "--set",
                             f"film.size=[{SIZE.replace('x', ',')}]")
         value = {m[1]: float(m[2]) for m in re.finditer(r"^([a-z_.]+) ([-+.e0-9]+)", said, re.M)}
