@@ -80,8 +80,8 @@ void TriedEdits::refused(const Trial& trial, const std::string& line) {
     return;
   }
   const size_t count = changes_until(trial.revision);
-  // A stroke that has gone on, or one of the oldest: none of these changes led there, so none is to blame. The newest is
-  // another one by now, and is tried.
+  // A stroke that has gone on, or one of the oldest: none of these changes led there, so none is to blame. The newest
+  // is another one by now, and is tried.
   if (count == 0 || changes_[count - 1].revision != trial.revision) return;
   if (bad_ == 0) good_still_ = false;
   if (bad_ == 0 || count < bad_) {
