@@ -33,7 +33,6 @@ double since(Clock::time_point start) { return std::chrono::duration<double>(Clo
 struct Frame {
   double at = 0;
   std::vector<std::filesystem::path> files;
-  std::string identity;
   bool finished = false;
 };
 
@@ -52,11 +51,10 @@ class Frames {
       render_all();
     if (!args_.stats.empty()) stats_.write(args_.stats);
     if (args_.video.empty()) return 0;
-    if (stop_requested()) {
-      say("no video: not all of its frames are there", 0);
-      return 0;
-    }
-    make_video();
+    if (stop_requested())
+      say("no video: not all of its frames are there");
+    else
+      make_video();
     return 0;
   }
 
@@ -99,7 +97,7 @@ class Frames {
     if (!args_.stats.empty()) require_writable_path(args_.stats);
     if (!args_.video.empty()) require_video(args_.video);
     for (const double at : times) {
-      Frame frame{at, {}, {}, false};
+      Frame frame{at, {}, false};
       for (const auto& output : args_.outputs) {
         frame.files.push_back(NumberedName::is_one(output) ? NumberedName(output).file(std::lround(at)) : output);
         names.add(frame.files.back());
@@ -108,8 +106,7 @@ class Frames {
       frames_.push_back(std::move(frame));
     }
     for (const auto& output : frames_.front().files) require_writable(output);
-    // Each frame's scene is read, and where there are pictures of it its files are hashed: of many frames that takes a
-    // while.
+    // Each frame's scene is read, and where there are pictures of it its files are hashed, which takes a while.
     Progress bar("check", args_.quiet || frames_.size() == 1);
     for (size_t i = 0; i < frames_.size(); ++i) {
       bar.update(double(i) / double(frames_.size()), fmt::format("frame {:g}", frames_[i].at));
@@ -129,8 +126,7 @@ class Frames {
 
   void check(Frame& frame) {
     const Scene scene = scene_at(frame.at);
-    const double shutter = scene.animation.shutter;
-    if (shutter > 0 && (args_.error > 0 || args_.seconds > 0))
+    if (scene.animation.shutter > 0 && (args_.error > 0 || args_.seconds > 0))
       user_error("--{}: a goal would not give every moment of a blurred frame its samples; valid: --spp",
                  args_.error > 0 ? "error" : "seconds");
     const std::vector<double> seen = moments(scene, most_samples(args_, scene.integrator));
@@ -143,11 +139,12 @@ class Frames {
     for (const auto& light : scene.lights) require(light.mesh);
     if (args_.frames.empty()) return;  // one picture, always made
     size_t there = 0;
+    std::string identity;
     for (const auto& file : frame.files) {
       std::error_code failed;
       if (!std::filesystem::exists(file, failed)) continue;
-      if (frame.identity.empty()) frame.identity = identity_.of(scene, overrides(frame.at));
-      if (image_text(file, kFrameAttribute) == frame.identity) {
+      if (identity.empty()) identity = identity_.of(scene, overrides(frame.at));
+      if (image_text(file, kFrameAttribute) == identity) {
         ++there;
       } else if (!args_.redo) {
         user_error(
@@ -184,14 +181,12 @@ class Frames {
     options.ready = catch_stop_signals;
     live_ = std::make_unique<LiveScene>(devices_, loaders_, LiveScene::Options{options, true});
     Progress bar(frames_.size() > 1 ? "frames" : "render", args_.quiet);
-    size_t made = 0;
     for (size_t i = first; i < frames_.size() && !stop_requested(); i = next(i + 1)) {
       const auto show = [&](double part) {
         bar.update((double(i) + part) / double(frames_.size()), fmt::format("frame {:g}", frames_[i].at));
       };
       show(0);
       if (!render(frames_[i], options, show)) break;
-      ++made;
     }
     bar.finish(stop_requested() ? "stopped" : "");
     if (!stop_requested()) rehearsal.finish();
@@ -206,9 +201,8 @@ class Frames {
 
   // False when it was stopped.
   bool render(Frame& frame, RenderOptions options, const std::function<void(double)>& show) {
-    // Before anything of it is read: of a file that changes meanwhile it has the old name, and no run keeps it.
-    if (!args_.frames.empty() && frame.identity.empty())
-      frame.identity = identity_.of(scene_at(frame.at), overrides(frame.at));
+    std::string identity;  // before anything of it is read
+    if (!args_.frames.empty()) identity = identity_.of(scene_at(frame.at), overrides(frame.at));
     const std::string shown = scene_identity(args_.scene, overrides(frame.at));
     const Scene scene = scene_at(frame.at);
     options.spp = most_samples(args_, scene.integrator);
@@ -233,7 +227,12 @@ class Frames {
     });
     if (r.stopped && stop_requested()) return false;
     const auto start = Clock::now();
-    write(frame, scene, shown, options, r);
+    if (const auto& file = identity_.changed()) {
+      identity.clear();
+      note({fmt::format("warning: {}: changed while frames were rendered; another run keeps none from then on",
+                        file->string())});
+    }
+    write(frame, scene, options, r, shown, identity);
     row.write_seconds = since(start);
     row.add(r);
     stats_.rows.push_back(row);
@@ -242,12 +241,12 @@ class Frames {
     return true;
   }
 
-  void write(const Frame& frame, const Scene& scene, const std::string& shown, const RenderOptions& options,
-             const Rendered& r) {
+  void write(const Frame& frame, const Scene& scene, const RenderOptions& options, const Rendered& r,
+             const std::string& shown, const std::string& identity) {
     Image image = r.image;
     image.figures = sampling_attributes({options.spp, options.error, options.seconds, r.stopped, r.reached});
     image.attributes = {{kSceneAttribute, shown}, {kAccuracyAttribute, accuracy_settings(scene)}};
-    if (!frame.identity.empty()) image.attributes[kFrameAttribute] = frame.identity;
+    if (!identity.empty()) image.attributes[kFrameAttribute] = identity;
     for (const auto& file : frame.files) write_image(image, file, scene.film.exposure, scene.film.view);
   }
 

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "geom/error.h"
+#include "geom/numbered_name.h"
 #include "host/scene_identity.h"
 
 namespace wale {
@@ -13,17 +17,39 @@ std::shared_ptr<const MeshSequence> OpenSequences::open(const SequenceSource& so
   return open_.back();
 }
 
+namespace {
+
+uint64_t hash_of(const std::filesystem::path& file) {
+  const ByteSource source = ByteSource::of_file(file);
+  return hash_bytes(source, 0, source.size());
+}
+
+}  // namespace
+
 uint64_t FrameIdentity::file(const std::filesystem::path& file) {
   if (file.empty()) return 0;
   const auto known = files_.find(file);
-  if (known != files_.end()) return known->second;
-  const ByteSource source = ByteSource::of_file(file);
-  return files_[file] = hash_bytes(source, 0, source.size());
+  if (known != files_.end()) return known->second.hash;
+  const FileStamp stamp = stamp_of(file);
+  return (files_[file] = {stamp, hash_of(file)}).hash;
+}
+
+// Of numbered files those of one frame are hashed for it; the rest stays in memory.
+void FrameIdentity::stamp(const MeshSequence& sequence, double from, double to) {
+  const SequenceSource& source = sequence.source();
+  const auto once = [&](const std::filesystem::path& file) { sequence_files_.try_emplace(file, stamp_of(file)); };
+  if (!source.cache.empty()) return once(source.cache);
+  if (!NumberedName::is_one(source.frames)) return once(source.frames);
+  const NumberedName name(source.frames);
+  const auto of = [&](double frame) { return name.file(source.first + std::lround(frame) * source.step); };
+  once(of(double(source.rest)));
+  for (double frame = std::floor(from); frame <= std::ceil(to); ++frame) frame_files_.push_back(stamp_of(of(frame)));
 }
 
 uint64_t FrameIdentity::mesh(const MeshSource& mesh, double shutter) {
   if (!mesh.sequence) return file(mesh.file);
   const auto sequence = sequences_.open(*mesh.sequence);
+  stamp(*sequence, mesh.frame, mesh.frame + shutter);
   const uint64_t base = mesh.sequence->base.empty() ? 0 : file(mesh.sequence->base);
   uint64_t all = base ^ sequence->hash(mesh.frame);
   if (shutter > 0) {
@@ -35,7 +61,35 @@ uint64_t FrameIdentity::mesh(const MeshSource& mesh, double shutter) {
   return all;
 }
 
+// A young file may have changed and have the time that it had.
+bool FrameIdentity::same(Hashed& file) const {
+  const FileStamp now = stamp_of(file.stamp.file);
+  if (now != file.stamp) return false;
+  if (file.stamp.settled) return true;
+  try {
+    if (hash_of(now.file) != file.hash) return false;
+  } catch (const Error& error) {  // it has just gone
+    if (error.fault() != Fault::user) throw;
+    return false;
+  }
+  file.stamp = now;
+  return true;
+}
+
+const std::optional<std::filesystem::path>& FrameIdentity::changed() {
+  const auto check = [&](const FileStamp& stamp) {
+    if (!changed_ && stamp_of(stamp.file) != stamp) changed_ = stamp.file;
+  };
+  for (auto& [name, file] : files_)
+    if (!changed_ && !same(file)) changed_ = name;
+  for (const auto& [name, stamp] : sequence_files_) check(stamp);
+  for (const FileStamp& stamp : frame_files_) check(stamp);
+  return changed_;
+}
+
 std::string FrameIdentity::of(const Scene& scene, const std::vector<std::string>& overrides) {
+  changed();  // of the frame before
+  frame_files_.clear();
   const IntegratorScene& i = scene.integrator;
   const FilmScene& film = scene.film;
   std::string text = fmt::format("{} {} {} {} {} {} {}x{} {} {} {}", scene_identity(args_.scene, overrides),

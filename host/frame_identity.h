@@ -3,10 +3,12 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "host/commands.h"
+#include "host/file_stamp.h"
 #include "host/world.h"
 
 namespace wale {
@@ -31,13 +33,27 @@ class FrameIdentity {
   /// samples, seed and accuracy, and the bytes of all files that it reads.
   std::string of(const Scene& scene, const std::vector<std::string>& overrides);
 
+  /// A file that has changed since it was hashed, if there is one: of all frames so far where it is hashed or read but
+  /// once, of the last frame where each has its own. What frames show is no longer known from then on, as some of what
+  /// is read stays and some is read anew; so there is one from then on, even if it changes back.
+  const std::optional<std::filesystem::path>& changed();
+
  private:
+  struct Hashed {
+    FileStamp stamp;  ///< from before
+    uint64_t hash = 0;
+  };
   uint64_t file(const std::filesystem::path& file);
   uint64_t mesh(const MeshSource& mesh, double shutter);
+  void stamp(const MeshSequence& sequence, double from, double to);
+  bool same(Hashed& file) const;
 
   const RenderArgs& args_;
   OpenSequences& sequences_;
-  std::map<std::filesystem::path, uint64_t> files_;
+  std::map<std::filesystem::path, Hashed> files_;
+  std::map<std::filesystem::path, FileStamp> sequence_files_;  ///< rests, and files of all frames
+  std::vector<FileStamp> frame_files_;                         ///< of sequences, of the last frame
+  std::optional<std::filesystem::path> changed_;
 };
 
 }  // namespace wale

@@ -5,20 +5,12 @@
 #include <vector>
 
 #include "geom/base_mesh.h"
+#include "host/file_stamp.h"
 #include "host/scene.h"
 
 namespace wale {
 
 struct Loaders;
-
-/// Which file or folder a name leads to, when it was changed last, and how long it is.
-struct FileStamp {
-  std::filesystem::path file;
-  std::filesystem::file_time_type changed{};
-  uintmax_t bytes = 0, number = 0;
-  bool settled = false;  ///< it was not young then: a later change has another time
-  bool operator==(const FileStamp&) const = default;
-};
 
 /// Meshes as a scene names them, before their transforms: of props and lights. An edit of something else finds them
 /// there, as long as their files are as they were.

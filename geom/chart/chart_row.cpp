@@ -78,7 +78,7 @@ int count(std::string_view text, size_t& i, const TextPlace& place) {
   if (i >= text.size() || !is_digit(text[i])) return 1;
   std::string_view rest = text.substr(i);
   const auto number = take_number(rest);
-  if (!number || *number < 1) user_error("{}:{}: a stitch is repeated 1 to 1000 times", place.where, place.column(i));
+  if (!number || *number < 1) user_error("{}:{}: a count is 1 to 1000", place.where, place.column(i));
   i = text.size() - rest.size();
   return *number;
 }
@@ -188,7 +188,7 @@ void parse_row_yarns(ChartRow& row, std::string_view text, const TextPlace& plac
     if (row.yarn.size() == 1) single = times == 1;
   }
   if (row.yarn.empty())
-    user_error("{}:{}: no yarn behind '|'; leave it out, or give one letter", place.where, place.column(0));
+    user_error("{}:{}: no yarn is given; leave it out, or give one letter", place.where, place.column(0));
   if (row.yarn.size() == 1 && single)
     row.yarn.assign(size_t(makes), row.yarn.front());
   else if (int(row.yarn.size()) < makes)

@@ -24,7 +24,7 @@ double next_length(std::vector<dvec2> tried, double wanted) {  // (loop length, 
 }  // namespace
 
 // Where a loop jams it was too short. Where it ran out of steps, or got stuck, nobody knows: longer ones relax sooner,
-// but one that is longer than another that came to rest only bounds the way from that one.
+// but one that is longer than another that came to rest only bars the way from that one.
 KnittedTile knit_to_gauge(const KnitSettings& settings, const KnitOfLength& knit,
                           const std::function<bool(double)>& progress) {
   constexpr int kTries = 10;
@@ -74,14 +74,19 @@ KnittedTile knit_to_gauge(const KnitSettings& settings, const KnitOfLength& knit
       next = next_length(tried, wanted);
     }
     next = std::clamp(next, std::max(kShortestLoop, jams), kLongestLoop);
-    // Neither beyond a length that failed, as seen from the nearest that came to rest: half-way to it.
-    const double from = tried.empty() ? next : best->loop_length / settings.yarn_thickness;
+    // Beyond a length that failed, as seen from every one that came to rest: half-way to it from the nearest in gauge.
+    const auto barred = [&](double from) {
+      return std::any_of(unknown.begin(), unknown.end(), [&](double f) { return (f - from) * (f - next) <= 0; });
+    };
     bool near = false;
-    for (const double failed : unknown)
-      if ((failed - from) * (failed - next) <= 0) {
-        next = std::sqrt(from * failed);
-        near = std::max(from, failed) < kBracket * std::min(from, failed);
-      }
+    if (!tried.empty() && std::all_of(tried.begin(), tried.end(), [&](const dvec2& t) { return barred(t.x); })) {
+      const double from = best->loop_length / settings.yarn_thickness;
+      for (const double failed : unknown)
+        if ((failed - from) * (failed - next) <= 0) {
+          next = std::sqrt(from * failed);
+          near = std::max(from, failed) < kBracket * std::min(from, failed);
+        }
+    }
     if (near) break;
     // Where the loop would be one that jams, the shortest that does not is looked for, until the two are near.
     if (next < kBracket * jams && !tried.empty()) next = std::sqrt(jams * shortest);

@@ -33,7 +33,8 @@ struct LossOptions {
 ///              share_p weight_t weight_b mean over i of ((x_i - target_i) / unit_b)^2
 ///
 /// with shares that add up to 1, and units of the target (Block::unit): a block counts |x - target|^2 / |target|^2, so
-/// that a dim back picture is worth a bright front one, and a black render loses the sum of the weights.
+/// that a dim back picture is worth a bright front one, and a black render loses the sum of the weights; but in blocks
+/// of contrast, where a difference of logarithms counts as it is.
 class Loss {
  public:
   /// Throws user errors: a picture without pixels, of two sizes or black, a weight below 0 or all of them 0, features

@@ -80,7 +80,9 @@ void TriedEdits::refused(const Trial& trial, const std::string& line) {
     return;
   }
   const size_t count = changes_until(trial.revision);
-  if (count == 0) return;  // the stroke has gone on
+  // A stroke that has gone on, or one of the oldest: none of these changes led there, so none is to blame. The newest
+  // is another one by now, and is tried.
+  if (count == 0 || changes_[count - 1].revision != trial.revision) return;
   if (bad_ == 0) good_still_ = false;
   if (bad_ == 0 || count < bad_) {
     bad_ = count;
@@ -119,7 +121,7 @@ void TriedEdits::take_back() {
     refusal_->line +=
         fmt::format("; {} after it went with it: {}", gone == 1 ? "one edit" : fmt::format("{} edits", gone), why);
   ++revision_;
-  if (changes_.empty()) good_revision_ = revision_;
+  (changes_.empty() ? good_revision_ : changes_.back().revision) = revision_;
 }
 
 }  // namespace wale

@@ -145,7 +145,7 @@ TEST(StitchChart, YarnOverWithoutDecrease) { refused("kko\nkk\n", {"c.chart:2:2"
 TEST(StitchChart, YarnThatEndsInMidAir) {
   refused("k4 | aba\n", {"c.chart:1:8: yarn a ends in mid-air: 3 of 4"});
   refused("k4 | abab2\n", {"c.chart:1", "more than the 4 stitches"});
-  refused("k4 |\n", {"c.chart:1", "no yarn behind"});
+  refused("k4 |\n", {"c.chart:1:5: no yarn is given; leave it out, or give one letter"});
 }
 TEST(StitchChart, YarnThatNoStitchHolds) { refused("kk\nss\n", {"c.chart:2:1", "held by none"}); }
 TEST(StitchChart, LoopThatIsNeverTaken) {
@@ -161,8 +161,8 @@ TEST(StitchChart, UnnamedYarn) {
   refused("k\nyarn a:\n", {"c.chart:2", "before the first row"});
 }
 TEST(StitchChart, AbsurdSizes) {
-  refused("k0\n", {"c.chart:1:2", "1 to 1000 times"});
-  refused("k99999999999\n", {"c.chart:1:2", "1 to 1000 times"});
+  refused("k0\n", {"c.chart:1:2: a count is 1 to 1000"});
+  refused("k99999999999\n", {"c.chart:1:2: a count is 1 to 1000"});
   std::string wide;
   for (int i = 0; i < 20; ++i) wide += "k1000 ";
   refused(wide, {"c.chart:1", "more than 16384 stitches"});
@@ -209,8 +209,10 @@ TEST(StitchChart, JsonNamesTheYarnThatIsWrong) {
   yarns(R"({"stitches": "kk", "yarns": ["a", "a", "b2"]})", "c.json: row 2, yarns:3: yarns for more than the 2");
   yarns(R"({"stitches": "kkk", "yarns": ["a", "b"]})", "c.json: row 2, yarns:2: yarn b ends in mid-air: 2 of 3");
   yarns(R"({"stitches": ["k", "k", "k"], "yarns": "a b"})", "c.json: row 2, yarns:3: yarn b ends in mid-air");
-  yarns(R"({"stitches": "kk", "yarns": ["a", "b0"]})", "c.json: row 2, yarns:2: a stitch is repeated");
-  yarns(R"({"stitches": "kk", "yarns": []})", "c.json: row 2, yarns:1: no yarn");
+  yarns(R"({"stitches": "kk", "yarns": ["a", "b0"]})", "c.json: row 2, yarns:2: a count is 1 to 1000");
+  for (const char* none : {"[]", "\"\"", "\" \""})
+    yarns(fmt::format(R"({{"stitches": "kk", "yarns": {}}})", none),
+          "c.json: row 2, yarns:1: no yarn is given; leave it out, or give one letter");
 }
 
 // Loops: where each one is taken, what lies in front.

@@ -87,18 +87,22 @@ TEST_F(KeptMeshesOfAScene, AreReadAgainWhereTheirFileHasChanged) {
   EXPECT_NE(user_message([&] { edited({}); }).find("still.obj"), std::string::npos);
 }
 
-// Its time and its length are as they were: the clock of files goes in steps.
+// It is written over, and its time and its length are as they were: the clock of files goes in steps.
 TEST_F(KeptMeshesOfAScene, AreReadAgainWhereTheirFileWasYoung) {
   const std::filesystem::path file = folder_ / "still.obj";
   write("still.obj", 0.001);
-  const auto bytes = std::filesystem::file_size(file);
+  const FileStamp first = stamp_of(file);
   const auto young = std::filesystem::file_time_type::clock::now();
   std::filesystem::last_write_time(file, young);
   EXPECT_EQ(edited({}), "1 still.obj");
   const std::vector<float> triangles = world_.triangles;
-  write("still.obj", 0.002);
-  ASSERT_EQ(std::filesystem::file_size(file), bytes);
+  write("other.obj", 0.002);
+  folder_.write("still.obj", file_text(folder_ / "other.obj"));
   std::filesystem::last_write_time(file, young);
+  const FileStamp now = stamp_of(file);
+  ASSERT_EQ(now.number, first.number) << "the same file";
+  ASSERT_EQ(now.bytes, first.bytes);
+  ASSERT_EQ(now.changed, young);
   EXPECT_EQ(edited({}), "1 still.obj");
   EXPECT_NE(world_.triangles, triangles);
 }

@@ -111,6 +111,13 @@ WATCH = """(() => {
 })()""" % SAMPLES
 
 
+# Lets the test cut the stream of pictures.
+STREAM = """(() => {
+  const all = window.fetch;
+  window.fetch = (path, more) => path === '/stream' ? all(path, {...more, signal: (window.line = new AbortController()).signal}) : all(path, more);
+})()"""
+
+
 class Picture:
     def __init__(self, kept):
         self.mean, self.luma, self.w, self.h = kept["mean"], kept["luma"], kept["w"], kept["h"]
@@ -192,6 +199,7 @@ def main():
         address = server.stdout.readline().strip()
         page = Page(chromium, folder)
         page.call("Emulation.setDeviceMetricsOverride", width=1280, height=860, deviceScaleFactor=1, mobile=False)
+        page.call("Page.addScriptToEvaluateOnNewDocument", source=STREAM)
         page.call("Page.navigate", url=address)
 
         def wait(condition, what, seconds=120):
@@ -430,6 +438,10 @@ def main():
                             f"; const text = {say}; [lastStatus, told] = was; sayStatus(); return text; }})()")
             expect(text == "Stopped until the next edit: a file has gone", f"stopped, and why: {text}")
         turn("view.lit", "scene")
+        page.run("window.said = []; new MutationObserver(() => said.push($('say').textContent)).observe($('say'), {childList: true}); line.abort()")
+        wait("said.some(t => t.startsWith('Connection lost'))", "that the connection is lost", 20)
+        wait(f"!{say}.startsWith('Connection lost')", "that it is there again", 20)
+        expect(True, "a connection that is there again is not said to be lost")
         expect("#40a060" in page.run("document.getElementById('command').textContent"), "the command line holds the edit")
         page.run("document.getElementById('file').value = 'page_saved.json'; document.getElementById('save').click()")
         wait("document.getElementById('say').textContent.includes('Saved')", "saving")

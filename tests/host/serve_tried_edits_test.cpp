@@ -2,6 +2,7 @@
 // bad ones holds what it sets.
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <set>
 
 #include "host/serve/tried_edits.h"
@@ -34,15 +35,24 @@ struct ServeTriedEdits : testing::Test {
   }
   void undo() { edits.change(undo_of(edits.newest())); }
   void redo() { edits.change(redo_of(edits.newest())); }
+  void end(const TriedEdits::Trial& trial) {
+    for (const std::string& one : trial.state.scene.edits())
+      if (nothing || bad.count(one)) return edits.refused(trial, "no " + one);
+    nothing ? edits.refused(trial, "no scene") : edits.shown(trial);
+  }
   bool try_one() {
     if (!edits.pending()) return false;
     const TriedEdits::Trial trial = edits.next();
     trials.push_back(text_of(trial.state));
-    for (const std::string& one : trial.state.scene.edits())
-      if (nothing || bad.count(one)) return edits.refused(trial, "no " + one), true;
-    if (nothing) return edits.refused(trial, "no scene"), true;
-    edits.shown(trial);
+    end(trial);
     return true;
+  }
+  /// Begins a trial, or ends the one that is under way.
+  void try_half(std::optional<TriedEdits::Trial>& under_way) {
+    if (under_way)
+      end(*std::exchange(under_way, {}));
+    else if (edits.pending())
+      under_way = edits.next();
   }
   void try_all() {
     for (int i = 0; try_one(); ++i) ASSERT_LT(i, 1000) << "it does not end";
@@ -165,6 +175,20 @@ TEST_F(ServeTriedEdits, AStrokeThatGoesOnMeanwhileIsTriedAgain) {
   try_all();
   EXPECT_EQ(now(), "film.exposure=1");
   EXPECT_EQ(refusal(), "");
+}
+
+// That it could not be shown is not the fault of the change before it.
+TEST_F(ServeTriedEdits, AStrokeThatGoesOnBadMeanwhileTakesNothingElseWithIt) {
+  try_all();
+  bad = {"film.exposure=8", "film.exposure=9"};
+  edit("camera.fov=30");
+  edit("film.exposure=9", "s");
+  const TriedEdits::Trial trial = edits.next();
+  edit("film.exposure=8", "s");
+  edits.refused(trial, "no");
+  try_all();
+  EXPECT_EQ(now(), "camera.fov=30");
+  EXPECT_EQ(refusal(), "of film.exposure=8: no film.exposure=8");
 }
 
 // What is edited while the search goes on is tried first, and ends it where it puts things right.
@@ -333,6 +357,7 @@ TEST_F(ServeTriedEdits, AnyRowLeavesTheEditsThatAreGood) {
     bad.clear();
     std::vector<std::string> made;
     std::set<std::string> there;
+    std::optional<TriedEdits::Trial> under_way;
     const auto listed = [&] {
       const auto& list = edits.newest().scene.edits();
       return std::set<std::string>(list.begin(), list.end());
@@ -347,7 +372,7 @@ TEST_F(ServeTriedEdits, AnyRowLeavesTheEditsThatAreGood) {
       } else if (step < 9) {
         step < 7 ? undo() : redo();
       } else {
-        try_one();
+        try_half(under_way);
         continue;
       }
       const std::set<std::string> after = listed();
@@ -356,6 +381,7 @@ TEST_F(ServeTriedEdits, AnyRowLeavesTheEditsThatAreGood) {
       for (const std::string& one : after)
         if (!before.count(one)) there.insert(one);
     }
+    if (under_way) end(*under_way);
     try_all();
     std::vector<std::string> good;
     for (const std::string& one : made)
@@ -371,18 +397,20 @@ TEST_F(ServeTriedEdits, AnyRowEndsInWhatCanBeShown) {
     edits = opened;
     const auto steps = *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 12));
     bad = {"film.exposure=2", "camera.fov=32"};
+    std::optional<TriedEdits::Trial> under_way;
     for (const int step : steps) {
       if (step < 4)
         edit(fmt::format("film.exposure={}", step), step % 2 ? "" : "e");
       else if (step < 7)
         edit(fmt::format("camera.fov={}", 26 + step));
       else if (step < 9)
-        try_one();
+        try_half(under_way);
       else if (step == 9)
         undo();
       else
         redo();
     }
+    if (under_way) end(*under_way);
     try_all();
     for (const std::string& one : edits.newest().scene.edits()) RC_ASSERT(!bad.count(one));
     RC_ASSERT(!edits.pending());
