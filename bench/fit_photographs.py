@@ -1,19 +1,18 @@
 #!/usr/bin/env python3
 """Fits materials to real photographs of woven cloth and judges them on parts that the fit has not seen.
 
-    python3 bench/fit_photographs.py WALE DATA OUT [cloth ...]
+    python3 bench/fit_photographs.py WALE DATA OUT [cloth ...] [--vgg]
 
 WALE: the program. DATA: a folder with photos/fabric-btdf (pairs NAME_R.png and NAME_T.png of FabricBTDF-Recovery,
-Tang et al. 2024), yarn-patterns/madypg (satin.pyp, basket.pyp) and vgg16. OUT: a folder for scenes, materials, reports and
+Tang et al. 2024), yarn-patterns/madypg/satin.pyp and vgg16. OUT: a folder for scenes, materials, reports and
 pictures; none of them is kept in the repository, as the photographs' licence would go with them. Needs NumPy and Pillow.
 
 The set-up, in units of 10 mm: camera at (0,0,8) over the plane, 53 degrees across; small lamps at (0,8,8) in front and
 (0,0,-9) behind, equally strong. A part of the photograph is what the same camera sees when it is turned to look at the part's
-middle: the four corners of its film, followed to the plane, are the --corners. The weave is a stand-in: a tile of another
-pattern, its threads as many a millimetre as peaks in the photograph's spectrum say, turned so that the satin's floats lie across
-the picture, as the upright streak of its highlight wants; so windows are compared, not pixels, and nobody had a grey card: the lamps' strength
-is fitted too (exposure). One thick ply a thread closes the gaps of the
-tile, which the cloths have not.
+middle: the four corners of its film, followed to the plane, are the --corners. The weave is a stand-in: a satin tile, its
+threads as many a millimetre as peaks in the photograph's spectrum say, its floats across the picture, as the upright streak of
+satin1's highlight wants; one thick ply a thread closes the tile's gaps, which the cloths have not. So windows are compared, not
+pixels. Nobody had a grey card: the lamps' strength is fitted too (exposure).
 """
 import json
 import math
@@ -27,9 +26,10 @@ from PIL import Image
 
 SIZE, FOV, HEIGHT, MM = 512, math.radians(53), 8.0, 10.0
 PART, HALF_FOV = 144, math.radians(8.2)  # pixels rendered of a part; half the angle that the turned camera sees
-CLOTHS = {  # tile, threads per tile, mm a thread across and along the photograph
-    "satin1": ("satin.pyp", 5, (0.245, 0.36)), "twill1": ("satin.pyp", 5, (0.207, 0.443)),
-    "twill4": ("basket.pyp", 4, (0.51, 0.243))}
+# Millimetres a thread across and along the photograph. (Through the gaps of basket.pyp, the other woven tile, comes ten times the
+# red light that twill4's saturated green lets through.)
+CLOTHS = {"satin1": (0.245, 0.36), "twill1": (0.207, 0.443), "twill4": (0.51, 0.243)}
+TILE, THREADS = "satin.pyp", 5
 # The fit sees the upper part, the lower one judges it. Left and right would not do: under one lamp in the middle satin1's right
 # part is 1.3 times as bright as its left one, twill4's 0.8 times, and no parameter here makes that.
 PARTS = {"fitted": (-2.0, 1.2), "unseen": (-2.0, -1.2)}
@@ -57,7 +57,6 @@ def corners(target):
 
 
 def scene(data, cloth, target):
-    tile, threads, pitch = CLOTHS[cloth]
     reach = 2 * math.tan(HALF_FOV) * HEIGHT * MM * 1.5 + 6
     lamp = {"type": "sphere", "radius": 2, "radiance": 4526}
     return {
@@ -68,8 +67,8 @@ def scene(data, cloth, target):
         "materials": {"yarn": {"type": "ply", "preset": "cotton", "reflect": [0.5, 0.5, 0.5], "transmit": [0.5, 0.5, 0.5]}},
         "fabrics": [{"name": "cloth", "mesh": {"generator": "swatch", "width": reach, "height": reach, "nu": 8, "nv": 8},
                      "transform": {"rotate": [0, 0, 90], "translate": [target[0] * MM, target[1] * MM, 0]},
-                     "pattern": str((data / "yarn-patterns/madypg" / tile).resolve()),
-                     "repeats": [1000 / (threads * p) for p in reversed(pitch)], "yarn": {"plies": 1, "twist_pitch": 8, "thickness": 1.4}, "material": "yarn"}],
+                     "pattern": str((data / "yarn-patterns/madypg" / TILE).resolve()),
+                     "repeats": [1000 / (THREADS * p) for p in reversed(CLOTHS[cloth])], "yarn": {"plies": 1, "twist_pitch": 8, "thickness": 1.4}, "material": "yarn"}],
         "lights": [dict(lamp, name="front", position=[0, 80, 80]), dict(lamp, name="back", position=[0, 0, -90])]}
 
 
@@ -150,22 +149,22 @@ def main():
     for cloth in [a for a in sys.argv[4:] if not a.startswith("-")] or CLOTHS:
         for part, target in PARTS.items():
             (out / f"{cloth}_{part}.json").write_text(json.dumps(scene(data, cloth, target), indent=1))
-        for weights in (False, True) if "--vgg" in sys.argv else (False,):
-            material, exposure, seconds, said = fit(wale, data, out, cloth, weights)
-            print(f"<!-- {material.stem}: {seconds:.0f} s; {said.strip()} -->".replace("\n", "; "))
-            for part, target in PARTS.items():
-                rows = []
-                for side, letter in (("front", "R"), ("back", "T")):
-                    photo = rectified(data / f"photos/fabric-btdf/{cloth}_{letter}.png", target)
-                    render = picture(wale, out, cloth, part, material, exposure, side)
-                    ratio = render.mean((0, 1)) / photo.mean((0, 1))
-                    text = lambda v: " ".join(f"{x:.3f}" for x in v)
-                    print(f"| {cloth} | {'with VGG16' if weights else 'without'} | {part} | {side} | {text(ratio)} | "
-                          f"{text(bands(photo))} | {text(bands(render))} |", flush=True)
-                    both = np.concatenate([photo, render], 1)
-                    rows.append(np.where(both <= 0.0031308, both * 12.92, 1.055 * both ** (1 / 2.4) - 0.055))
-                Image.fromarray((np.clip(np.concatenate(rows), 0, 1) * 255 + 0.5).astype("uint8")).save(
-                    out / f"{material.stem}_{part}.png")
+        weights = "--vgg" in sys.argv
+        material, exposure, seconds, said = fit(wale, data, out, cloth, weights)
+        print(f"<!-- {material.stem}: {seconds:.0f} s; {said.strip()} -->".replace("\n", "; "))
+        for part, target in PARTS.items():
+            rows = []
+            for side, letter in (("front", "R"), ("back", "T")):
+                photo = rectified(data / f"photos/fabric-btdf/{cloth}_{letter}.png", target)
+                render = picture(wale, out, cloth, part, material, exposure, side)
+                ratio = render.mean((0, 1)) / photo.mean((0, 1))
+                text = lambda v: " ".join(f"{x:.3f}" for x in v)
+                print(f"| {cloth} | {'with VGG16' if weights else 'without'} | {part} | {side} | {text(ratio)} | "
+                      f"{text(bands(photo))} | {text(bands(render))} |", flush=True)
+                both = np.concatenate([photo, render], 1)
+                rows.append(np.where(both <= 0.0031308, both * 12.92, 1.055 * both ** (1 / 2.4) - 0.055))
+            Image.fromarray((np.clip(np.concatenate(rows), 0, 1) * 255 + 0.5).astype("uint8")).save(
+                out / f"{material.stem}_{part}.png")
 
 
 if __name__ == "__main__":
