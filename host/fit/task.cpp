@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "geom/byte_source.h"
 #include "geom/error.h"
 #include "host/fit/photograph_words.h"
 #include "host/fit/resample.h"
+#include "host/fit/scene_content.h"
 #include "host/scene_identity.h"
 #include "host/suggest.h"
 
@@ -67,14 +66,6 @@ void take_size(Scene& scene, int width, int height, double resolution) {
   scene.film.height = int(std::lround(height * resolution));
 }
 
-uint64_t hash_file(const std::filesystem::path& file, uint64_t seed) {
-  if (file.empty()) return seed;
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << in.rdbuf();
-  return hash_bytes(bytes.str(), seed);
-}
-
 FitSettings settings_of(const FitArgs& args) {
   FitSettings settings;
   settings.parameters = fit_parameters(args.parameters);
@@ -120,6 +111,7 @@ std::string identity_of(const FitArgs& args, const FitTask& task) {
   const Scene& scene = task.scene;
   uint64_t hash = kHashSeed;
   for (const auto& file : {args.front, args.back, args.weights}) hash = hash_file(file, hash);
+  for (const auto& file : files_of(scene)) hash = hash_file(file, hash);
   std::string words = fmt::format(
       "{} {} {}x{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", scene_identity(args.scene, args.set), args.preset,
       scene.film.width, scene.film.height, scene.film.exposure, settings.target.material, settings.starts,
@@ -129,6 +121,8 @@ std::string identity_of(const FitArgs& args, const FitTask& task) {
   words += task.sides[0] ? " front" : "";
   words += task.sides[1] ? " back" : "";
   for (const FitParameter& p : settings.parameters) words += fmt::format(" {}={}..{}", p.name(), p.low, p.high);
+  words += ' ';
+  words += model_words(scene);
   return fmt::format("{:016x}", hash_bytes(words, hash));
 }
 

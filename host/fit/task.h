@@ -20,7 +20,7 @@ struct FitTask {
 /// Throws user errors that name the option, the file or the scene's key.
 FitTask read_task(const FitArgs& args);
 
-/// Tells fits apart: whatever changes what is fitted.
+/// Tells fits apart: whatever changes what is fitted, the bytes of all files that are read among it.
 std::string identity_of(const FitArgs& args, const FitTask& task);
 
 }  // namespace wale::fit
