@@ -150,10 +150,15 @@ void add_fit_options(CLI::App& command, wale::FitArgs& args) {
       ->check(CLI::IsMember({"srgb", "linear"}));
   command.add_option("--grey", args.grey, "x,y,width,height of a grey reference in the front photograph, pixels");
   command.add_option("--grey-reflectance", args.grey_reflectance, "of it; 0.18 unless given");
-  command.add_option("--gains", args.gains, "red,green,blue: factors on linear light, where there is no reference");
+  command.add_option(
+      "--gains", args.gains,
+      "red,green,blue: factors on linear light of the front or only photograph, where there is no reference");
   command.add_option("--crop", args.crop, "x,y,width,height of the part with the cloth, pixels");
   command.add_option("--corners", args.corners, "x,y of its four corners instead, clockwise from the top left");
-  command.add_option("--front-exposure", args.front_exposure, "time x ISO / f-number^2 of the front photograph")
+  command
+      .add_option("--front-exposure", args.front_exposure,
+                  "time x ISO / f-number^2 of the front photograph, in any unit: only its ratio to the back's counts; "
+                  "1 unless given")
       ->check(finite_number(false));
   command.add_option("--back-exposure", args.back_exposure, "the same of the back one")->check(finite_number(false));
   command

@@ -33,6 +33,19 @@ Rectangle rectangle(const std::string& text, const char* option) {
   return {int(v[0]), int(v[1]), int(v[2]), int(v[3])};
 }
 
+// What a card or the user says of the light. Gains of a command line are by themselves factors on the file's linear
+// values, whatever its exposure; a library's are factors on those values over the exposure.
+void take_reference(PhotographOptions& options, const FitArgs& args) {
+  if (!args.grey.empty()) options.grey = rectangle(args.grey, "--grey");
+  options.grey_reflectance = args.grey_reflectance;
+  if (options.grey && args.gains.empty()) return;
+  std::vector<double> gains = {1, 1, 1};
+  if (!args.gains.empty()) gains = numbers(args.gains, 3, "--gains", "1.9,1,1.4 (red, green, blue)");
+  for (const double gain : gains)
+    if (!(gain > 0)) user_error("--gains: {:g} is not above 0", gain);
+  options.gains = std::array{gains[0] * options.exposure, gains[1] * options.exposure, gains[2] * options.exposure};
+}
+
 }  // namespace
 
 PhotographOptions photograph_options(const FitArgs& args, bool front) {
@@ -49,13 +62,8 @@ PhotographOptions photograph_options(const FitArgs& args, bool front) {
     for (size_t i = 0; i < 4; ++i) corners[i] = {v[2 * i], v[2 * i + 1]};
     out.corners = corners;
   }
-  if (!front) return out;  // a card does not let light through: what it says of the front holds for both
-  if (!args.grey.empty()) out.grey = rectangle(args.grey, "--grey");
-  out.grey_reflectance = args.grey_reflectance;
-  if (!args.gains.empty()) {
-    const std::vector<double> v = numbers(args.gains, 3, "--gains", "1.9,1,1.4 (red, green, blue)");
-    out.gains = std::array{v[0], v[1], v[2]};
-  }
+  // A card does not let light through: what it says of the front holds for both.
+  if (front || args.front.empty()) take_reference(out, args);
   return out;
 }
 
@@ -71,9 +79,7 @@ PicturePair read_photographs(const FitArgs& args, std::vector<std::string>& warn
     user_error(
         "--grey: a card lets no light through, so it is measured in the front photograph, which is not given; "
         "--gains gives its three numbers");
-  PhotographOptions options = photograph_options(args, true);
-  options.exposure = front ? args.front_exposure : args.back_exposure;
-  Photograph one = read_photograph(front ? args.front : args.back, options);
+  Photograph one = read_photograph(front ? args.front : args.back, photograph_options(args, front));
   warnings.insert(warnings.end(), one.warnings.begin(), one.warnings.end());
   PicturePair out;
   (front ? out.front : out.back) = std::move(one.picture);
