@@ -84,10 +84,13 @@ std::string other_settings(const Scene& scene, const FitTarget& target, std::spa
   std::string out;
   for (const FitParameter& p : parameters) {
     const std::string name = p.group->name;
-    const double value = short_number(p.group->get(scene, target, p.k));
-    if (name == "exposure") out += fmt::format("--set film.exposure={:g}\n", value);
+    if (name == "exposure") out += fmt::format("--set film.exposure={:g}\n", short_number(scene.film.exposure));
     if (!p.group->geometry) continue;
-    for (const size_t f : target.fabrics) out += fmt::format("--set fabrics.{}.yarn.{}={:g}\n", f, name, value);
+    for (const size_t f : target.fabrics) {
+      const FabricSpec& spec = scene.fabrics[f].spec;  // of its own hand
+      const double value = name == "twist_pitch" ? spec.twist_pitch : spec.thickness;
+      out += fmt::format("--set fabrics.{}.yarn.{}={:g}\n", f, name, short_number(value));
+    }
   }
   return out;
 }

@@ -96,10 +96,14 @@ const std::array<ParameterGroup, 12> kGroups = {{
     {"exposure", 1, -6, 6, false, false, false, "stops", "how bright the photographs are against the scene's lights",
      [](const Scene& s, const FitTarget&, int) { return s.film.exposure; },
      [](Scene& s, const FitTarget&, int, double v) { s.film.exposure = v; }, kScalesPictures},
-    {"twist_pitch", 1, 2, 40, true, false, true, "yarn radii", "length of yarn in which its plies wind once",
-     [](const Scene& s, const FitTarget& t, int) { return s.fabrics[t.fabrics.front()].spec.twist_pitch; },
+    {"twist_pitch", 1, 2, 40, true, false, true, "yarn radii",
+     "length of yarn in which its plies wind once; their hand stays",
+     [](const Scene& s, const FitTarget& t, int) { return std::abs(s.fabrics[t.fabrics.front()].spec.twist_pitch); },
      [](Scene& s, const FitTarget& t, int, double v) {
-       for (const size_t f : t.fabrics) s.fabrics[f].spec.twist_pitch = v;
+       for (const size_t f : t.fabrics) {
+         double& pitch = s.fabrics[f].spec.twist_pitch;
+         pitch = std::copysign(v, pitch);
+       }
      }},
     {"thickness", 1, 0.5, 1.5, true, false, true, "", "factor on the yarn's radius in the tile",
      [](const Scene& s, const FitTarget& t, int) { return s.fabrics[t.fabrics.front()].spec.thickness; },
@@ -192,6 +196,18 @@ std::vector<FitParameter> fit_parameters(const std::string& text) {
     add(*group, low, high);
   }
   return out;
+}
+
+void require_hand(const Scene& scene, const FitTarget& target, std::span<const FitParameter> parameters) {
+  const bool twist =
+      std::any_of(parameters.begin(), parameters.end(), [](const auto& p) { return p.name() == "twist_pitch"; });
+  for (const size_t f : target.fabrics)
+    if (twist && scene.fabrics[f].spec.twist_pitch == 0)
+      user_error(
+          "{}: fabrics.{}.yarn.twist_pitch: 0 is yarn without twist, whose hand a fit does not choose; valid: 2 to "
+          "1000, "
+          "or -1000 to -2 for left-handed yarn (--set fabrics.{}.yarn.twist_pitch=8)",
+          scene.file, f, f);
 }
 
 void apply_parameters(Scene& scene, const FitTarget& target, std::span<const FitParameter> parameters,

@@ -57,6 +57,9 @@ struct FitParameter {
 /// nearest valid choice.
 std::vector<FitParameter> fit_parameters(const std::string& text);
 
+/// Throws a user error where the twist of yarn without any is to be fitted: a fit keeps the yarn's hand.
+void require_hand(const Scene& scene, const FitTarget& target, std::span<const FitParameter> parameters);
+
 /// Puts the values at these places into a scene whose material gives body colours; what it gave in another way
 /// (color, gloss, translucency) is replaced.
 void apply_parameters(Scene& scene, const FitTarget& target, std::span<const FitParameter> parameters,

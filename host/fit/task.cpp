@@ -89,6 +89,7 @@ FitTask read_task(const FitArgs& args) {
   task.settings = settings_of(args);
   task.scene = read_scene(args);
   task.settings.target = target_of(task.scene, args.material);
+  require_hand(task.scene, task.settings.target, task.settings.parameters);
   task.sides = {!args.front.empty(), !args.back.empty()};
   for (size_t side = 0; side < 2; ++side)
     if (task.sides[side]) lit_from(task.scene, side);

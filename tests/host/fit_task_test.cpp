@@ -77,5 +77,13 @@ TEST_F(FitTaskTest, EveryAccuracySettingTellsFitsApart) {
   EXPECT_EQ(identity(), before);
 }
 
+TEST_F(FitTaskTest, TwistOfYarnWithoutAnyIsRefused) {
+  args_.parameters = "twist_pitch";
+  args_.set = {"fabrics.0.yarn.twist_pitch=0"};
+  EXPECT_NE(user_message([&] { identity(); }).find("fabrics.0.yarn.twist_pitch: 0 is"), std::string::npos);
+  args_.set = {"fabrics.0.yarn.twist_pitch=-8"};
+  EXPECT_NO_THROW(identity());
+}
+
 }  // namespace
 }  // namespace wale::fit
