@@ -89,6 +89,17 @@ Photograph read(const std::filesystem::path& file, const PhotographOptions& opti
   return photograph;
 }
 
+// Whether the files show the same, whatever gains and exposure each was given.
+bool same_values(const Photograph& a, double a_exposure, const Photograph& b, double b_exposure) {
+  constexpr double kRounding = 1e-5;  // of floats that were scaled
+  for (size_t i = 0; i < a.picture.pixels.size(); ++i) {
+    const double x = double(a.picture.pixels[i]) * a_exposure / a.gains[i % 3];
+    const double y = double(b.picture.pixels[i]) * b_exposure / b.gains[i % 3];
+    if (std::abs(x - y) > kRounding * std::max(std::abs(x), std::abs(y))) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 Photograph read_photograph(const std::filesystem::path& file, const PhotographOptions& options) {
@@ -104,7 +115,7 @@ PhotographPair read_pair(const std::filesystem::path& front_file, const std::fil
   if (front.picture.width != back.picture.width || front.picture.height != back.picture.height)
     user_error("{}: {} x {} pixels, but {} has {} x {}; crop both alike, or give a size", name, back.picture.width,
                back.picture.height, front_file.string(), front.picture.width, front.picture.height);
-  if (front.picture.pixels == back.picture.pixels)
+  if (same_values(front, options.front.exposure, back, options.back.exposure))
     user_error("{}: the same picture as {}; one lit from behind is needed", name, front_file.string());
   const double share = brightness(back.picture) / brightness(front.picture);
   if (!(share >= kNoLight))

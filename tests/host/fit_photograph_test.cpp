@@ -257,7 +257,17 @@ TEST_F(FitPhotograph, PairsThatAreNone) {
   };
   EXPECT_EQ(refused(flat("other.ppm", 90)),
             "other.ppm: 64 x 64 pixels, but front.ppm has 80 x 80; crop both alike, or give a size");
-  EXPECT_EQ(refused(front), "front.ppm: the same picture as front.ppm; one lit from behind is needed");
+  const std::string same = "front.ppm: the same picture as front.ppm; one lit from behind is needed";
+  EXPECT_EQ(refused(front), same);
+  PairOptions scaled;  // which makes its numbers others
+  scaled.front.exposure = 0.026;
+  scaled.back.exposure = 0.2;
+  EXPECT_EQ(refused(front, scaled), same);
+  scaled.front.gains = {3, 1.7, 0.9};
+  EXPECT_EQ(refused(front, scaled), same);
+  scaled.back.gains = {0.7, 0.9, 1.1};
+  EXPECT_EQ(refused(front, scaled), same);
+  EXPECT_NO_THROW(read_pair(front, cloth("nearly.ppm", 0.4001), scaled));
   PairOptions options;
   options.back.exposure = 1e5;
   EXPECT_EQ(refused(cloth("back.ppm", 0.3), options),
