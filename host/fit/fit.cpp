@@ -221,6 +221,7 @@ FitResult Fit::judge(const FitStart& best, const Polished& polished) {
     fitted.value = p.value(place);
     fitted.start = p.value(best.from[k]);
     fitted.at_bound = place <= 1e-3 || place >= 1 - 1e-3;
+    fitted.assessed = !polished.errors.too_few_cells;
     if (const auto deviation = polished.errors.deviations[k]) {
       fitted.low = p.value(std::max(0.0, place - 2 * *deviation));
       fitted.high = p.value(std::min(1.0, place + 2 * *deviation));

@@ -62,6 +62,7 @@ struct FittedParameter {
   std::optional<double> low, high;  ///< two standard deviations to either side, within the bounds (Rounds::solve)
   bool determined = false;          ///< that range is less than half of the bounds'
   bool at_bound = false;
+  bool assessed = true;  ///< there were parts of the photographs enough to tell a range; without, none is claimed
 };
 
 struct FitResult {

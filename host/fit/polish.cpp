@@ -9,14 +9,17 @@ namespace {
 constexpr double kShares[] = {1.0 / 8, 1.0 / 8, 3.0 / 4};  // of the samples
 constexpr int kFirstPlaces = 8;
 constexpr int kRounds = 8, kLeastRounds = 3;
-constexpr double kReach = 0.15;    // lines tell no further
+constexpr double kReach = 0.15;  // lines tell no further
+constexpr double kToItsEnd = 0.999 * kReach;
 constexpr double kDeviations = 3;  // that a step may go where all is well
 constexpr double kLeastStep = 2e-2;
 
-// Whether a step is as short as its errors are.
+// Whether a step is as short as its errors are; where these are not known, whether it ended before its reach.
 bool short_step(std::span<const double> from, const Rounds::Step& step) {
   for (size_t k = 0; k < from.size(); ++k) {
-    const double allowed = std::max(kLeastStep, kDeviations * step.errors.deviations[k].value_or(1.0));
+    const double allowed = step.errors.too_few_cells
+                               ? kToItsEnd
+                               : std::max(kLeastStep, kDeviations * step.errors.deviations[k].value_or(1.0));
     if (std::abs(step.x[k] - from[k]) > allowed) return false;
   }
   return true;
@@ -25,8 +28,7 @@ bool short_step(std::span<const double> from, const Rounds::Step& step) {
 // Whether nothing that is known wanted to go farther.
 bool within_reach(std::span<const double> from, const Rounds::Step& step) {
   for (size_t k = 0; k < from.size(); ++k)
-    if (std::abs(step.x[k] - from[k]) > 0.999 * kReach &&
-        step.errors.deviations[k].value_or(1.0) < kReach / kDeviations)
+    if (std::abs(step.x[k] - from[k]) > kToItsEnd && step.errors.deviations[k].value_or(1.0) < kReach / kDeviations)
       return false;
   return true;
 }

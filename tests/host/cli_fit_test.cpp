@@ -113,6 +113,29 @@ TEST_F(CliFit, OnePhotographIsFittedWithAWarning) {
   EXPECT_TRUE(contains(run.err, "only the photograph lit from the front is given")) << run.err;
 }
 
+// One mean colour has no spread that ranges could come from.
+TEST_F(CliFit, ColourAloneIsFittedWithoutRanges) {
+  photograph();
+  const Outcome run = run_wale({"fit",          scene_,
+                                "--front",      at("front.exr"),
+                                "-o",           at("material.json"),
+                                "--resolution", "1",
+                                "--parameters", "reflect",
+                                "--starts",     "1",
+                                "--spp",        "8",
+                                "--final-spp",  "64",
+                                "--loss",       "color=1",
+                                "--report",     at("fit.html")});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_TRUE(contains(run.err, "no ranges")) << run.err;
+  EXPECT_TRUE(contains(run.err, "3 parameters, at least 4")) << run.err;
+  EXPECT_FALSE(contains(run.err + run.out, "not determine")) << run.err;
+  EXPECT_FALSE(contains(run.out, " to ")) << run.out;
+  EXPECT_TRUE(contains(file_text(folder_ / "fit.html"), "<td>not known</td>"));
+  const auto material = nlohmann::json::parse(file_text(folder_ / "material.json"));
+  for (const auto& v : material["reflect"]) EXPECT_TRUE(v.get<double>() > 0 && v.get<double>() < 1) << run.out;
+}
+
 TEST_F(CliFit, RefusesInOneLine) {
   photograph();
   const auto line = [&](const std::vector<std::string>& more) { return refused(fit(more)); };
