@@ -137,14 +137,18 @@ FitStart Fit::descend(FitJournal& journal, int number, const std::vector<double>
   };
   const std::function<bool()> ended = [this] { return stop_() || out_of_time(kDescentShare); };
   if (settings_.method == FitMethod::bobyqa) {
-    const BobyqaResult r = bobyqa(
-        [&](std::span<const double> x) {
-          const double loss = evaluate(x, samples, false, descent_seed()).loss();
-          note(x, loss);
-          return loss;
-        },
-        begin, left, kLeastStep, ended);
-    out.to = r.x, out.loss = r.loss, out.converged = r.converged;
+    const auto loss_at = [&](std::span<const double> x) {
+      const double loss = evaluate(x, samples, false, descent_seed()).loss();
+      note(x, loss);
+      return loss;
+    };
+    const BobyqaResult r = bobyqa(loss_at, begin, left, kLeastStep, ended);
+    // Where the time is over, NLopt knows of no place at all.
+    const bool better = r.loss < least;
+    out.to = better ? r.x : begin;
+    out.loss = better ? r.loss : least;
+    out.converged = r.converged;
+    if (out.evaluations == 0) out.loss = loss_at(begin);
     return out;
   }
   LeastSquaresOptions options;
@@ -261,7 +265,9 @@ std::optional<FitResult> Fit::whole_run(FitJournal& journal, const std::function
   for (size_t i = 0; i < journal.chosen.size() && (i == 0 || !out_of_time(kDescentShare)); ++i) {
     const bool done = i < journal.finished.size();
     // An earlier run may have had fewer evaluations.
-    if (done && (journal.finished[i].converged || journal.finished[i].evaluations >= settings_.evaluations)) continue;
+    if (done && (journal.finished[i].converged || journal.finished[i].evaluations >= settings_.evaluations ||
+                 out_of_time(kDescentShare)))
+      continue;
     FitStart start = descend(journal, int(i), journal.chosen[i]);
     if (stopped()) return std::nullopt;
     if (done)

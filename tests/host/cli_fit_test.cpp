@@ -1,4 +1,6 @@
 // `wale fit` and `wale measure`: what they write, what they refuse, going on after a stop.
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "cli_fixture.h"
@@ -103,6 +105,35 @@ TEST_F(CliFit, GoesOnFromWhereItWas) {
   EXPECT_TRUE(contains(refusal(journal.dump()), "another version"));
   EXPECT_TRUE(contains(refusal("{}"), "no journal of a fit"));
   EXPECT_EQ(run_wale(quick({"--redo", "--quiet"})).status, 0);
+}
+
+// A search that has no time left keeps what it had, or looks once.
+TEST_F(CliFit, BobyqaThatIsOutOfTimeKeepsWhatItHad) {
+  photograph();
+  const auto run = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--method", "bobyqa", "--report", at("fit.html")});
+    return run_wale(quick(more));
+  };
+  EXPECT_EQ(run({"--evaluations", "12", "--quiet"}).status, 1);
+  auto journal = nlohmann::json::parse(file_text(folder_ / "material.json.fit"));
+  const auto done = journal["finished"][0];
+  ASSERT_LT(done["loss"].get<double>(), 0.98 * done["first_loss"].get<double>());
+  const std::string row = "<td>" + fmt::format("{:.3g}", done["first_loss"].get<double>()) + "</td><td>" +
+                          fmt::format("{:.3g}", done["loss"].get<double>()) + "</td><td>12</td>";
+  for (const bool between_descents : {true, false}) {
+    if (!between_descents) journal["finished"].clear();
+    folder_.write("material.json.fit", journal.dump());
+    const Outcome late = run({"--minutes", "1e-6"});
+    EXPECT_EQ(late.status, 0) << late.err;
+    EXPECT_TRUE(contains(late.err, "goes on after")) << late.err;
+    EXPECT_TRUE(contains(file_text(folder_ / "fit.html"), row)) << row;
+  }
+  const Outcome none = run({"--minutes", "1e-6"});
+  EXPECT_EQ(none.status, 0) << none.err;
+  EXPECT_FALSE(contains(none.err, "goes on after"));
+  const std::string page = file_text(folder_ / "fit.html");
+  EXPECT_TRUE(contains(page, "</td><td>1</td>")) << page.substr(page.find("loss at the end"));
+  EXPECT_FALSE(contains(page, "<td>inf</td>"));
 }
 
 TEST_F(CliFit, OnePhotographIsFittedWithAWarning) {
