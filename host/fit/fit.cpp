@@ -162,6 +162,11 @@ FitStart Fit::descend(FitJournal& journal, int number, const std::vector<double>
   return out;
 }
 
+bool Fit::all_converged(const FitJournal& journal) const {
+  return journal.finished.size() == size_t(settings_.starts) &&
+         std::all_of(journal.finished.begin(), journal.finished.end(), [](const FitStart& s) { return s.converged; });
+}
+
 const FitStart& Fit::best_of(const FitJournal& journal) const {
   return *std::min_element(journal.finished.begin(), journal.finished.end(),
                            [](const FitStart& a, const FitStart& b) { return a.loss < b.loss; });
@@ -275,7 +280,7 @@ std::optional<FitResult> Fit::whole_run(FitJournal& journal, const std::function
     else
       journal.finished.push_back(std::move(start));
   }
-  const bool cut_short = out_of_time(kDescentShare);
+  const bool cut_short = out_of_time(kDescentShare) && !all_converged(journal);
   const FitStart& best = best_of(journal);
   const Polished polished =
       polish([this](std::span<const double> x, int samples, uint32_t number) { return round(x, samples, number); },

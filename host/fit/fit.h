@@ -104,6 +104,8 @@ class Fit {
   FitStart descend(FitJournal& journal, int number, const std::vector<double>& from);
   Replicate round(std::span<const double> places, int samples, uint32_t number);
   FitResult judge(const FitStart& best, const Polished& polished);
+  /// From all starts that are wanted.
+  bool all_converged(const FitJournal& journal) const;
   const FitStart& best_of(const FitJournal& journal) const;
   void keep(FitJournal& journal, int start, std::span<const double> places, double loss);
 

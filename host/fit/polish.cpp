@@ -40,20 +40,24 @@ Polished polish(const RenderRound& render, std::vector<double> x, int samples, s
   Polished out;
   uint32_t number = 0;
   int places = 0;
-  for (size_t share = 0; share < std::size(kShares) && (out.x.empty() || !stop());) {
+  size_t share = 0;
+  bool settled = false, cut = false;
+  while (share < std::size(kShares) && (out.x.empty() || !stop())) {
     Rounds rounds(cells);
     while (rounds.count() < kRounds && (rounds.count() < kLeastRounds || !stop())) {
       rounds.add(render(x, std::max(1, int(std::lround(kShares[share] * samples / kRounds))), number++));
       if (rounds.count() > 1) progress(x, rounds.loss());
     }
+    cut |= rounds.count() < kRounds;
     const Rounds::Step step = rounds.solve(x, kReach);
     // Where the descent ended far off, a few samples lead on before more are spent. Later steps may be longer than
     // their errors: they mend those of few samples.
-    out.converged = share == 0 ? short_step(x, step) : out.converged && within_reach(x, step);
-    if (out.converged || ++places >= kFirstPlaces || share > 0) ++share;
+    settled = share == 0 ? short_step(x, step) : settled && within_reach(x, step);
+    if (settled || ++places >= kFirstPlaces || share > 0) ++share;
     out.x = x = step.x;
     out.errors = step.errors;
   }
+  out.converged = settled && !cut && share == std::size(kShares);
   return out;
 }
 

@@ -107,6 +107,23 @@ TEST_F(CliFit, GoesOnFromWhereItWas) {
   EXPECT_EQ(run_wale(quick({"--redo", "--quiet"})).status, 0);
 }
 
+// Descents were through; polishing was not.
+TEST_F(CliFit, APolishThatIsOutOfTimeIsSaidSo) {
+  photograph();
+  EXPECT_EQ(run_wale(quick({"--evaluations", "12", "--quiet"})).status, 1);
+  auto journal = nlohmann::json::parse(file_text(folder_ / "material.json.fit"));
+  journal["finished"][0]["converged"] = true;
+  folder_.write("material.json.fit", journal.dump());
+  const Outcome late = run_wale(quick({"--minutes", "1e-6"}));
+  EXPECT_EQ(late.status, 0) << late.err;
+  EXPECT_TRUE(contains(late.err, "were over before the fit had converged")) << late.err;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "material.json"));
+  // Time that was enough is not complained of.
+  const Outcome enough = run_wale(quick({"--minutes", "60", "--redo"}));
+  EXPECT_EQ(enough.status, 0) << enough.err;
+  EXPECT_FALSE(contains(enough.err, "were over")) << enough.err;
+}
+
 // A search that has no time left keeps what it had, or looks once.
 TEST_F(CliFit, BobyqaThatIsOutOfTimeKeepsWhatItHad) {
   photograph();

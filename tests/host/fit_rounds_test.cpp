@@ -196,6 +196,21 @@ TEST(FitRounds, PolishGoesOnFromStepToStep) {
   EXPECT_TRUE(polished.converged);
 }
 
+// A polish without its last rounds has not come to rest, however short its steps were.
+TEST(FitRounds, PolishThatIsCutHasNotConverged) {
+  for (const int allowed : {8, 9, 16, 20, 23, 24}) {
+    NoisyPictures pictures(6, 2, 0.1);
+    int asked = 0;
+    const Polished polished = polish(
+        [&](std::span<const double> x, int, uint32_t) {
+          ++asked;
+          return pictures.round(x, kHere);
+        },
+        kHere, 960, pictures.cells, [&] { return asked >= allowed; }, [](std::span<const double>, double) {});
+    EXPECT_EQ(polished.converged, allowed == 24) << allowed;  // three places of eight rounds
+  }
+}
+
 TEST(FitRounds, PolishEndsEarlyWithWhatItHas) {
   NoisyPictures pictures(6, 2, 0.1);
   int asked = 0;
@@ -206,6 +221,7 @@ TEST(FitRounds, PolishEndsEarlyWithWhatItHas) {
       },
       kHere, 960, pictures.cells, [] { return true; }, [](std::span<const double>, double) {});
   EXPECT_EQ(asked, 3);
+  EXPECT_FALSE(polished.converged);
   EXPECT_EQ(polished.x.size(), 2u);
   EXPECT_EQ(polished.errors.deviations.size(), 2u);
 }
