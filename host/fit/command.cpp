@@ -153,7 +153,7 @@ int run_fit(const FitArgs& args, const Loaders& loaders) {
     write_journal(journal, identity, journal_path);
     not_converged(args, journal, *result);
   }
-  if (!result->best.converged && !args.quiet)
+  if (result->out_of_time && !args.quiet)
     fmt::print(stderr, "warning: --minutes {:g} were over before the fit had converged\n", args.minutes);
   write_text_file(args.output, material_json(result->scene, settings.target));
   if (const std::string more = other_settings(result->scene, settings.target, settings.parameters); !more.empty())

@@ -137,14 +137,18 @@ FitStart Fit::descend(FitJournal& journal, int number, const std::vector<double>
   };
   const std::function<bool()> ended = [this] { return stop_() || out_of_time(kDescentShare); };
   if (settings_.method == FitMethod::bobyqa) {
-    const BobyqaResult r = bobyqa(
-        [&](std::span<const double> x) {
-          const double loss = evaluate(x, samples, false, descent_seed()).loss();
-          note(x, loss);
-          return loss;
-        },
-        begin, left, kLeastStep, ended);
-    out.to = r.x, out.loss = r.loss, out.converged = r.converged;
+    const auto loss_at = [&](std::span<const double> x) {
+      const double loss = evaluate(x, samples, false, descent_seed()).loss();
+      note(x, loss);
+      return loss;
+    };
+    const BobyqaResult r = bobyqa(loss_at, begin, left, kLeastStep, ended);
+    // Where the time is over, NLopt knows of no place at all.
+    const bool better = r.loss < least;
+    out.to = better ? r.x : begin;
+    out.loss = better ? r.loss : least;
+    out.converged = r.converged;
+    if (out.evaluations == 0) out.loss = loss_at(begin);
     return out;
   }
   LeastSquaresOptions options;
@@ -156,6 +160,11 @@ FitStart Fit::descend(FitJournal& journal, int number, const std::vector<double>
       begin, options, [&](std::span<const double> x, double loss, bool) { note(x, loss); });
   out.to = r.x, out.loss = r.residuals.loss(), out.converged = r.converged;
   return out;
+}
+
+bool Fit::all_converged(const FitJournal& journal) const {
+  return journal.finished.size() == size_t(settings_.starts) &&
+         std::all_of(journal.finished.begin(), journal.finished.end(), [](const FitStart& s) { return s.converged; });
 }
 
 const FitStart& Fit::best_of(const FitJournal& journal) const {
@@ -221,6 +230,7 @@ FitResult Fit::judge(const FitStart& best, const Polished& polished) {
     fitted.value = p.value(place);
     fitted.start = p.value(best.from[k]);
     fitted.at_bound = place <= 1e-3 || place >= 1 - 1e-3;
+    fitted.assessed = !polished.errors.too_few_cells;
     if (const auto deviation = polished.errors.deviations[k]) {
       fitted.low = p.value(std::max(0.0, place - 2 * *deviation));
       fitted.high = p.value(std::min(1.0, place + 2 * *deviation));
@@ -260,7 +270,9 @@ std::optional<FitResult> Fit::whole_run(FitJournal& journal, const std::function
   for (size_t i = 0; i < journal.chosen.size() && (i == 0 || !out_of_time(kDescentShare)); ++i) {
     const bool done = i < journal.finished.size();
     // An earlier run may have had fewer evaluations.
-    if (done && (journal.finished[i].converged || journal.finished[i].evaluations >= settings_.evaluations)) continue;
+    if (done && (journal.finished[i].converged || journal.finished[i].evaluations >= settings_.evaluations ||
+                 out_of_time(kDescentShare)))
+      continue;
     FitStart start = descend(journal, int(i), journal.chosen[i]);
     if (stopped()) return std::nullopt;
     if (done)
@@ -268,7 +280,7 @@ std::optional<FitResult> Fit::whole_run(FitJournal& journal, const std::function
     else
       journal.finished.push_back(std::move(start));
   }
-  const bool cut_short = out_of_time(kDescentShare);
+  const bool cut_short = out_of_time(kDescentShare) && !all_converged(journal);
   const FitStart& best = best_of(journal);
   const Polished polished =
       polish([this](std::span<const double> x, int samples, uint32_t number) { return round(x, samples, number); },

@@ -62,6 +62,7 @@ struct FittedParameter {
   std::optional<double> low, high;  ///< two standard deviations to either side, within the bounds (Rounds::solve)
   bool determined = false;          ///< that range is less than half of the bounds'
   bool at_bound = false;
+  bool assessed = true;  ///< there were parts of the photographs enough to tell a range; without, none is claimed
 };
 
 struct FitResult {
@@ -103,6 +104,8 @@ class Fit {
   FitStart descend(FitJournal& journal, int number, const std::vector<double>& from);
   Replicate round(std::span<const double> places, int samples, uint32_t number);
   FitResult judge(const FitStart& best, const Polished& polished);
+  /// From all starts that are wanted.
+  bool all_converged(const FitJournal& journal) const;
   const FitStart& best_of(const FitJournal& journal) const;
   void keep(FitJournal& journal, int start, std::span<const double> places, double loss);
 

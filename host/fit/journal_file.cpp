@@ -1,6 +1,7 @@
 #include "host/fit/journal_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "geom/error.h"
@@ -54,16 +55,20 @@ void write_journal(const FitJournal& journal, const std::string& identity, const
   out["seconds"] = journal.seconds;
   out["chosen"] = journal.chosen;
   out["finished"] = Json::array();
-  for (const FitStart& s : journal.finished)
+  // JSON has no infinity. Descents that ended there are not done, nor are those after: they count by their place.
+  for (const FitStart& s : journal.finished) {
+    if (!std::isfinite(s.first_loss) || !std::isfinite(s.loss)) break;
     out["finished"].push_back({{"from", s.from},
                                {"to", s.to},
                                {"first_loss", s.first_loss},
                                {"loss", s.loss},
                                {"evaluations", s.evaluations},
                                {"converged", s.converged}});
+  }
   out["steps"] = Json::array();
   for (const FitStep& s : journal.steps)
-    out["steps"].push_back({{"start", s.start}, {"seconds", s.seconds}, {"loss", s.loss}, {"places", s.places}});
+    if (std::isfinite(s.loss))
+      out["steps"].push_back({{"start", s.start}, {"seconds", s.seconds}, {"loss", s.loss}, {"places", s.places}});
   write_text_file(file, out.dump() + "\n");
 }
 

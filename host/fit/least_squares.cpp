@@ -28,6 +28,8 @@ Normal normal_of(const std::vector<Matrix>& j, const Residuals& at) {
   return {0.5 * (h + h.transpose()), 0.5 * (a.transpose() * rb + b.transpose() * ra)};
 }
 
+double largest_curvature(const Normal& n) { return n.h.diagonal().maxCoeff(); }
+
 class Descent {
  public:
   Descent(const ResidualFunction& f, std::span<const double> start, const LeastSquaresOptions& options,
@@ -39,15 +41,15 @@ class Descent {
     at_ = evaluate(x_, true);
     report(x_, at_.loss(), true);
     take_derivatives();
-    double damping = 1e-2 * std::max(normal_of(j_, at_).h.diagonal().maxCoeff(), 1e-300), growth = 2;
+    double damping = 1e-2 * first_scale(), growth = 2;
     int quiet = 0, refused = 0;
     bool converged = false;
     while (!spent() && !converged) {
       const Normal n = normal_of(j_, at_);
       const Vector step = bounded_step(n, damping);
       if (step.cwiseAbs().maxCoeff() < options_.least_step) {
-        converged = fresh_;
-        if (!fresh_ && !refresh()) break;
+        converged = fresh_ && (refused == 0 || largest_curvature(n) > 0);
+        if (fresh_ || !refresh()) break;
         continue;
       }
       std::vector<double> to(x_.size());
@@ -61,7 +63,10 @@ class Descent {
           if (!refresh()) break;
           continue;
         }
-        converged = ++refused == kRefused;
+        if (++refused == kRefused) {
+          converged = largest_curvature(n) > 0;
+          break;
+        }
         damping *= growth;
         growth *= 2;
         continue;
@@ -78,6 +83,15 @@ class Descent {
   }
 
  private:
+  // Of the curvature. Noise may leave products of replicates without any above 0; lengths of their columns bound it.
+  double first_scale() const {
+    double scale = largest_curvature(normal_of(j_, at_));
+    if (!(scale > 0))
+      for (Eigen::Index k = 0; k < Eigen::Index(x_.size()); ++k)
+        scale = std::max(scale, j_.front().col(k).norm() * j_.back().col(k).norm());
+    return std::max(scale, 1e-300);
+  }
+
   bool spent() const { return evaluations_ >= options_.evaluations || options_.stop(); }
 
   Residuals evaluate(const std::vector<double>& x, bool derivatives) {

@@ -45,8 +45,9 @@ using LeastSquaresProgress = std::function<void(std::span<const double> x, doubl
 
 /// Least sum of squared residuals over the unit box: Levenberg-Marquardt (Marquardt 1963) with Nielsen's damping
 /// (Madsen, Nielsen, Tingleff, Methods for Non-linear Least Squares Problems 2004, section 3.2) and an active set of
-/// bounds. Derivatives that the function does not give are one-sided differences, brought up to date between by
-/// Broyden's rank-one formula (1965).
+/// bounds. Four steps in a row that gain nothing end it: converged, unless noise of replicates left no curvature, so
+/// that steps were blind. Derivatives that the function does not give are one-sided differences, brought up to date
+/// between by Broyden's rank-one formula (1965).
 LeastSquaresResult least_squares(const ResidualFunction& f, std::span<const double> start,
                                  const LeastSquaresOptions& options = {}, const LeastSquaresProgress& progress = {});
 

@@ -16,7 +16,7 @@ using PolishProgress = std::function<void(std::span<const double> x, double loss
 struct Polished {
   std::vector<double> x;
   ParameterErrors errors;
-  bool converged = false;  ///< steps became as short as their errors
+  bool converged = false;  ///< steps became as short as their errors, and none was left out
 };
 
 /// Makes the end of a descent surer: three places, at each several rounds of renders and one step, the next with more

@@ -77,16 +77,18 @@ figure{margin:0;width:32%}figcaption{font-size:13px;color:#555}img{image-renderi
 svg{max-width:100%;height:auto})";
 
 std::string remark(const FittedParameter& p) {
-  if (!p.determined) return "not determined by these photographs";
+  if (p.assessed && !p.determined) return "not determined by these photographs";
   return p.at_bound ? "at its bound" : "";
 }
 
 std::string table_row(const FitParameter& parameter, const FittedParameter& p) {
-  const std::string range = p.low ? fmt::format("{} to {}", figure(*p.low), figure(*p.high)) : "any";
+  const std::string range = p.low        ? fmt::format("{} to {}", figure(*p.low), figure(*p.high))
+                            : p.assessed ? "any"
+                                         : "not known";
   return fmt::format("<tr{}><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-                     p.determined ? "" : " class=bad", parameter.name(), figure(p.value), range, figure(p.start),
-                     fmt::format("{} to {}", figure(parameter.low), figure(parameter.high)), parameter.group->unit,
-                     remark(p));
+                     p.determined || !p.assessed ? "" : " class=bad", parameter.name(), figure(p.value), range,
+                     figure(p.start), fmt::format("{} to {}", figure(parameter.low), figure(parameter.high)),
+                     parameter.group->unit, remark(p));
 }
 
 std::string start_name(size_t i) {
@@ -120,10 +122,16 @@ std::string parameter_line(const FitParameter& parameter, const FittedParameter&
 
 std::vector<std::string> parameter_warnings(const FitSettings& settings, const FitResult& result) {
   std::vector<std::string> out;
-  for (size_t k = 0; k < result.parameters.size(); ++k) {
+  const size_t count = result.parameters.size();
+  if (!std::all_of(result.parameters.begin(), result.parameters.end(), [](const auto& p) { return p.assessed; }))
+    out.push_back(
+        fmt::format("no ranges: they come from how windows of the photographs differ, and the loss has too few of them "
+                    "for {} parameter{}, at least {}; low_pass and gradient have more",
+                    count, count == 1 ? "" : "s", count + 1));
+  for (size_t k = 0; k < count; ++k) {
     const FittedParameter& p = result.parameters[k];
     const FitParameter& parameter = settings.parameters[k];
-    if (!p.determined)
+    if (p.assessed && !p.determined)
       out.push_back(fmt::format("{}: these photographs do not determine it; {} is where the fit came to rest",
                                 parameter.name(), figure(p.value)));
     else if (p.at_bound)

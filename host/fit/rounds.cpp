@@ -13,11 +13,12 @@ using Vector = Eigen::VectorXd;
 
 constexpr double kOwn = 0.1;          // share of a covariance that is taken to be each axis' own: cells are few
 constexpr double kSaysNothing = 0.8;  // of the box, deviation with the prior alone: 1
+constexpr double kDamping = 1e-2;     // of the largest curvature
 
 Matrix inverse(const Matrix& m) {
   const Eigen::SelfAdjointEigenSolver<Matrix> e(m);
   const Vector v = e.eigenvalues();
-  const double least = 1e-12 * std::max(v.maxCoeff(), 1e-300);
+  const double least = std::max(1e-12 * v.maxCoeff(), 1e-300);  // has a reciprocal
   return e.eigenvectors() * v.cwiseMax(least).cwiseInverse().asDiagonal() * e.eigenvectors().transpose();
 }
 
@@ -93,6 +94,8 @@ Rounds::Step Rounds::solve(std::span<const double> x, double reach) const {
   Vector b = Vector::Zero(axes);
   for (const Cell& cell : cells) a += cell.curvature, b += cell.slope;
   a = positive(a);
+  const bool too_few = cells.size() < x.size() + 1;
+  const double damping = kDamping * a.diagonal().maxCoeff();
 
   const auto covariance = [&](const Vector& step) {
     Matrix m = Matrix::Zero(axes, axes);
@@ -108,6 +111,11 @@ Rounds::Step Rounds::solve(std::span<const double> x, double reach) const {
   };
   const auto information = [](const Matrix& curvature, const Matrix& m) {
     return Matrix(curvature * inverse(m) * curvature + Matrix::Identity(m.rows(), m.cols()));
+  };
+  const auto free_step = [&](const Matrix& curvature, const Vector& slope, const Matrix& m) -> Vector {
+    if (!too_few) return inverse(information(curvature, m)) * (curvature * (inverse(m) * -slope));
+    if (!(damping > 0)) return Vector::Zero(slope.size());
+    return inverse(curvature + damping * Matrix::Identity(m.rows(), m.cols())) * -slope;
   };
 
   Vector lower(axes), upper(axes), step = Vector::Zero(axes);
@@ -125,13 +133,12 @@ Rounds::Step Rounds::solve(std::span<const double> x, double reach) const {
       // The equations of axes that are held at an end do not hold.
       for (const Eigen::Index k : open) step[k] = 0;
       const Vector slope = b + a * step;
-      const Matrix part = a(open, open), noise = m(open, open);
-      const Vector s = inverse(information(part, noise)) * (part * (inverse(noise) * -slope(open)));
+      const Vector s = free_step(a(open, open), slope(open), m(open, open));
       // Of those that go too far, the one that does most is held; without it the others may not.
       size_t worst = open.size();
       double most = 0;
       for (size_t i = 0; i < open.size(); ++i) {
-        const double v = s[Eigen::Index(i)];
+        const double v = std::isfinite(s[Eigen::Index(i)]) ? s[Eigen::Index(i)] : 0;  // else it says nothing
         step[open[i]] = std::clamp(v, lower[open[i]], upper[open[i]]);
         if (const double beyond = std::abs(v - step[open[i]]); beyond > most) most = beyond, worst = i;
       }
@@ -144,9 +151,11 @@ Rounds::Step Rounds::solve(std::span<const double> x, double reach) const {
   out.x.resize(x.size());
   for (Eigen::Index k = 0; k < axes; ++k) out.x[size_t(k)] = std::clamp(x[size_t(k)] + step[k], 0.0, 1.0);
   out.loss = loss_here + step.dot(2 * b + a * step);
-  const Matrix spread = inverse(information(a, covariance(step)));
   out.errors.deviations.resize(x.size());
   out.errors.correlation.assign(x.size(), std::vector<double>(x.size(), 0.0));
+  out.errors.too_few_cells = too_few;
+  if (too_few) return out;
+  const Matrix spread = inverse(information(a, covariance(step)));
   for (Eigen::Index k = 0; k < axes; ++k) {
     const double deviation = std::sqrt(spread(k, k));
     if (deviation < kSaysNothing) out.errors.deviations[size_t(k)] = deviation;

@@ -14,6 +14,7 @@ struct ParameterErrors {
   /// Standard deviations. No value where the pictures say hardly anything.
   std::vector<std::optional<double>> deviations;
   std::vector<std::vector<double>> correlation;
+  bool too_few_cells = false;  ///< to tell any of it: no axis has a deviation, no two are correlated
 
   /// Pairs of axes whose correlation is larger than that, of either sign.
   std::vector<std::pair<size_t, size_t>> alike(double correlation) const;
@@ -47,6 +48,9 @@ class Rounds {
   /// photographs, of renders and what the model cannot do all count, neighbouring residuals that err together too
   /// (White, Econometrica 48, 1980, in clusters). With curvature A the place has the information A M^-1 A. A weak
   /// prior, one box wide, keeps axes that say nothing where they are.
+  ///
+  /// M of fewer cells than axes + 1 has not the rank: it would call certain what no cells could differ in. Then the
+  /// step is Marquardt's damped one, and no errors are stated.
   Step solve(std::span<const double> x, double reach) const;
 
  private:

@@ -1,4 +1,6 @@
 // `wale fit` and `wale measure`: what they write, what they refuse, going on after a stop.
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "cli_fixture.h"
@@ -105,12 +107,81 @@ TEST_F(CliFit, GoesOnFromWhereItWas) {
   EXPECT_EQ(run_wale(quick({"--redo", "--quiet"})).status, 0);
 }
 
+// Descents were through; polishing was not.
+TEST_F(CliFit, APolishThatIsOutOfTimeIsSaidSo) {
+  photograph();
+  EXPECT_EQ(run_wale(quick({"--evaluations", "12", "--quiet"})).status, 1);
+  auto journal = nlohmann::json::parse(file_text(folder_ / "material.json.fit"));
+  journal["finished"][0]["converged"] = true;
+  folder_.write("material.json.fit", journal.dump());
+  const Outcome late = run_wale(quick({"--minutes", "1e-6"}));
+  EXPECT_EQ(late.status, 0) << late.err;
+  EXPECT_TRUE(contains(late.err, "were over before the fit had converged")) << late.err;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "material.json"));
+  // Time that was enough is not complained of.
+  const Outcome enough = run_wale(quick({"--minutes", "60", "--redo"}));
+  EXPECT_EQ(enough.status, 0) << enough.err;
+  EXPECT_FALSE(contains(enough.err, "were over")) << enough.err;
+}
+
+// A search that has no time left keeps what it had, or looks once.
+TEST_F(CliFit, BobyqaThatIsOutOfTimeKeepsWhatItHad) {
+  photograph();
+  const auto run = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--method", "bobyqa", "--report", at("fit.html")});
+    return run_wale(quick(more));
+  };
+  EXPECT_EQ(run({"--evaluations", "12", "--quiet"}).status, 1);
+  auto journal = nlohmann::json::parse(file_text(folder_ / "material.json.fit"));
+  const auto done = journal["finished"][0];
+  ASSERT_LT(done["loss"].get<double>(), 0.98 * done["first_loss"].get<double>());
+  const std::string row = "<td>" + fmt::format("{:.3g}", done["first_loss"].get<double>()) + "</td><td>" +
+                          fmt::format("{:.3g}", done["loss"].get<double>()) + "</td><td>12</td>";
+  for (const bool between_descents : {true, false}) {
+    if (!between_descents) journal["finished"].clear();
+    folder_.write("material.json.fit", journal.dump());
+    const Outcome late = run({"--minutes", "1e-6"});
+    EXPECT_EQ(late.status, 0) << late.err;
+    EXPECT_TRUE(contains(late.err, "goes on after")) << late.err;
+    EXPECT_TRUE(contains(file_text(folder_ / "fit.html"), row)) << row;
+  }
+  const Outcome none = run({"--minutes", "1e-6"});
+  EXPECT_EQ(none.status, 0) << none.err;
+  EXPECT_FALSE(contains(none.err, "goes on after"));
+  const std::string page = file_text(folder_ / "fit.html");
+  EXPECT_TRUE(contains(page, "</td><td>1</td>")) << page.substr(page.find("loss at the end"));
+  EXPECT_FALSE(contains(page, "<td>inf</td>"));
+}
+
 TEST_F(CliFit, OnePhotographIsFittedWithAWarning) {
   photograph();
   const Outcome run = run_wale({"fit", scene_, "--front", at("front.exr"), "-o", at("material.json"), "--resolution",
                                 "1", "--parameters", "reflect", "--starts", "1", "--spp", "8", "--final-spp", "8"});
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_TRUE(contains(run.err, "only the photograph lit from the front is given")) << run.err;
+}
+
+// One mean colour has no spread that ranges could come from.
+TEST_F(CliFit, ColourAloneIsFittedWithoutRanges) {
+  photograph();
+  const Outcome run = run_wale({"fit",          scene_,
+                                "--front",      at("front.exr"),
+                                "-o",           at("material.json"),
+                                "--resolution", "1",
+                                "--parameters", "reflect",
+                                "--starts",     "1",
+                                "--spp",        "8",
+                                "--final-spp",  "64",
+                                "--loss",       "color=1",
+                                "--report",     at("fit.html")});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_TRUE(contains(run.err, "no ranges")) << run.err;
+  EXPECT_TRUE(contains(run.err, "3 parameters, at least 4")) << run.err;
+  EXPECT_FALSE(contains(run.err + run.out, "not determine")) << run.err;
+  EXPECT_FALSE(contains(run.out, " to ")) << run.out;
+  EXPECT_TRUE(contains(file_text(folder_ / "fit.html"), "<td>not known</td>"));
+  const auto material = nlohmann::json::parse(file_text(folder_ / "material.json"));
+  for (const auto& v : material["reflect"]) EXPECT_TRUE(v.get<double>() > 0 && v.get<double>() < 1) << run.out;
 }
 
 TEST_F(CliFit, RefusesInOneLine) {

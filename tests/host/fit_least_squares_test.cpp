@@ -99,6 +99,34 @@ TEST(FitLeastSquares, BobyqaHandsErrorsOn) {
                std::runtime_error);
 }
 
+// Two replicates' derivatives of which noise has made the product negative.
+ResidualFunction without_curvature(double truth, std::vector<double>& asked) {
+  return [truth, &asked](std::span<const double> x, bool) {
+    asked.push_back(x[0]);
+    const double value = std::abs(x[0] - truth) + 0.01;
+    return Residuals{{{{value}, {{1.0}}}, {{value}, {{-0.5}}}}};
+  };
+}
+
+TEST(FitLeastSquares, WithoutCurvatureStepsBecomeShorterAllTheSame) {
+  std::vector<double> asked;
+  const std::vector<double> start{0.5};
+  const LeastSquaresResult r = least_squares(without_curvature(0.4, asked), start);
+  EXPECT_NEAR(r.x[0], 0.4, 0.03);
+  EXPECT_LT(asked.size(), 30u);
+}
+
+TEST(FitLeastSquares, WithoutCurvatureBlindStepsAreNoConvergence) {
+  for (const double level : {0.5, 0.505}) {
+    std::vector<double> asked;
+    const std::vector<double> start{0.5};
+    const LeastSquaresResult r = least_squares(without_curvature(level, asked), start);
+    EXPECT_FALSE(r.converged) << level;
+    EXPECT_DOUBLE_EQ(r.x[0], 0.5);
+    EXPECT_LT(std::abs(asked.back() - 0.5), 0.2) << level;  // not the same corner of the box again and again
+  }
+}
+
 // Noise that grows along the axis: squares are least where there is little of it, products of two replicates are not.
 TEST(FitLeastSquares, ProductsOfReplicatesAreNotDrawnToWhereNoiseIsLeast) {
   constexpr int kPoints = 4000;

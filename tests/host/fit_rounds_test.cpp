@@ -120,6 +120,59 @@ TEST(FitRounds, NamesWhatIsNotDetermined) {
   EXPECT_EQ(step.errors.alike(0.95), (std::vector<std::pair<size_t, size_t>>{{0, 1}}));
 }
 
+// One window has no spread, and two have one direction of it: the step is taken, errors are not made up.
+TEST(FitRounds, TooFewCellsMoveButStateNoErrors) {
+  for (const int count : {1, 2, 3}) {
+    NoisyPictures pictures(7, 3, 0.05);
+    for (size_t i = 0; i < kPixels; ++i) pictures.cells[i] = int(i) % count;
+    const std::vector<double> here{0.5, 0.5, 0.5}, truth{0.55, 0.47, 0.52};
+    Rounds rounds(pictures.cells);
+    for (int k = 0; k < 8; ++k) rounds.add(pictures.round(here, truth));
+    const Rounds::Step step = rounds.solve(here, 0.5);
+    EXPECT_TRUE(step.errors.too_few_cells) << count;
+    EXPECT_TRUE(step.errors.alike(0.95).empty()) << count;
+    EXPECT_TRUE(std::isfinite(step.loss)) << count;
+    for (size_t k = 0; k < 3; ++k) {
+      EXPECT_FALSE(step.errors.deviations[k]) << count;
+      EXPECT_NEAR(step.x[k], truth[k], 0.03) << count << ' ' << k;
+    }
+  }
+  NoisyPictures enough(7, 3, 0.05);
+  for (size_t i = 0; i < kPixels; ++i) enough.cells[i] = int(i) % 4;
+  Rounds rounds(enough.cells);
+  const std::vector<double> here{0.5, 0.5, 0.5};
+  for (int k = 0; k < 8; ++k) rounds.add(enough.round(here, here));
+  EXPECT_FALSE(rounds.solve(here, 0.5).errors.too_few_cells);
+}
+
+// Nothing is known of axes that change nothing; not-a-number would be carried into the material.
+TEST(FitRounds, AxesThatChangeNothingStayWhereTheyAre) {
+  for (const int count : {1, kCells}) {
+    NoisyPictures pictures(8, 2, 0);
+    for (auto& column : pictures.columns_) column.assign(kPixels, 0.0);
+    for (size_t i = 0; i < kPixels; ++i) pictures.cells[i] = int(i) % count;
+    Rounds rounds(pictures.cells);
+    for (int k = 0; k < 3; ++k) rounds.add(pictures.round(kHere, kTruth));
+    const Rounds::Step step = rounds.solve(kHere, 0.5);
+    EXPECT_EQ(step.x, kHere) << count;
+    EXPECT_FALSE(step.errors.deviations[0] || step.errors.deviations[1]) << count;
+    EXPECT_EQ(step.errors.too_few_cells, count == 1);
+  }
+}
+
+// Steps without errors are short when they end before their reach, so that a far truth is come to all the same.
+TEST(FitRounds, PolishOfOneCellGoesOnFromStepToStep) {
+  NoisyPictures pictures(9, 2, 0.05);
+  pictures.cells.assign(kPixels, 0);
+  const std::vector<double> far{0.1, 0.5}, truth{0.9, 0.36};
+  const Polished polished =
+      polish([&](std::span<const double> x, int, uint32_t) { return pictures.round(x, truth); }, far, 960,
+             pictures.cells, [] { return false; }, [](std::span<const double>, double) {});
+  constexpr double kDeviation = 0.021;  // 0.3 of a round over the root of 8 rounds and of 30, the columns' squares
+  for (size_t k = 0; k < 2; ++k) EXPECT_NEAR(polished.x[k], truth[k], 4 * kDeviation) << k;
+  EXPECT_TRUE(polished.converged);
+}
+
 // A truth farther away than one step reaches is found by the next.
 TEST(FitRounds, PolishGoesOnFromStepToStep) {
   NoisyPictures pictures(5, 2, 0.1);
@@ -143,6 +196,21 @@ TEST(FitRounds, PolishGoesOnFromStepToStep) {
   EXPECT_TRUE(polished.converged);
 }
 
+// A polish without its last rounds has not come to rest, however short its steps were.
+TEST(FitRounds, PolishThatIsCutHasNotConverged) {
+  for (const int allowed : {8, 9, 16, 20, 23, 24}) {
+    NoisyPictures pictures(6, 2, 0.1);
+    int asked = 0;
+    const Polished polished = polish(
+        [&](std::span<const double> x, int, uint32_t) {
+          ++asked;
+          return pictures.round(x, kHere);
+        },
+        kHere, 960, pictures.cells, [&] { return asked >= allowed; }, [](std::span<const double>, double) {});
+    EXPECT_EQ(polished.converged, allowed == 24) << allowed;  // three places of eight rounds
+  }
+}
+
 TEST(FitRounds, PolishEndsEarlyWithWhatItHas) {
   NoisyPictures pictures(6, 2, 0.1);
   int asked = 0;
@@ -153,6 +221,7 @@ TEST(FitRounds, PolishEndsEarlyWithWhatItHas) {
       },
       kHere, 960, pictures.cells, [] { return true; }, [](std::span<const double>, double) {});
   EXPECT_EQ(asked, 3);
+  EXPECT_FALSE(polished.converged);
   EXPECT_EQ(polished.x.size(), 2u);
   EXPECT_EQ(polished.errors.deviations.size(), 2u);
 }
