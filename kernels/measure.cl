@@ -1,5 +1,5 @@
 /* What a device can move and compute at best: the floors that stages are measured against. */
-#include "geometry/real.clh"
+#include "shared/lanes.clh"
 
 __kernel void copy(__global const float4* from, __global float4* to, uint count) {
   for (uint i = get_global_id(0); i < count; i += get_global_size(0)) to[i] = from[i];
