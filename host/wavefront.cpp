@@ -120,7 +120,7 @@ void Wavefront::trace(WFrame frame, const std::vector<uint32_t>& tiles, uint32_t
     for (const char* name : {"shade_ply", "shade_fibre", "shade_surface"})
       if (const auto found = kernels_.find(name); found != kernels_.end()) {
         found->second.setArg(found->second.getInfo<CL_KERNEL_NUM_ARGS>() - 1, depth);
-        launch(name, bound);
+        launch(name, std::string_view(name) == "shade_ply" ? bound / size_t(features_.lanes) + 1 : bound);
       }
     const uint32_t shaded = kShaded[side];
     compact(live, count_index, shaded, bound, active_[1 - side], shadow_list_, spare_list_);

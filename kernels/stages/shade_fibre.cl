@@ -1,6 +1,8 @@
 /* A path meets a single fibre: connect it to a light, go on along a lobe of the fibre's far-field scattering. The path
    goes on from the fibre's axis, where a far-field function has its one place: a ray from there meets no front face of
-   its own tube. */
+   its own tube. One hit a work-item. */
+#undef W_LANES
+#define W_LANES 1
 #include "appearance/fibre_bsdf.clh"
 #include "appearance/ply_color.clh"
 #include "geometry/ply_surface.clh"

@@ -25,7 +25,7 @@ __kernel void logarithms(__global const float* x, __global w_real* out, uint cou
 }
 __kernel void complements(__global const float* x, __global w_real* out, uint count) {
   const uint i = get_global_id(0);
-  if (i < count) out[i] = w_one_minus_exp(x[i]);
+  if (i < count) out[i] = w_one_minus_exp(x[i], w_exp(-x[i]));
 }
 __kernel void circles(__global const float* x, __global w_real* out, uint count) {
   const uint i = get_global_id(0);

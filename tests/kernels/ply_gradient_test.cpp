@@ -17,14 +17,15 @@ __kernel void gradients(__global const WPlyMaterial* m, __global const float* in
   const uint i = get_global_id(0);
   if (i >= count) return;
   __global const float* p = in + 12 * i;
-  const w_real3 t = normalize(vec(p)), n = normalize(vec(p + 3)), wv = normalize(vec(p + 6)), w = normalize(vec(p + 9));
-  const WPlyShade s = w_ply_setup(*m, t, n, wv);
-  const WPlyShade tilted = w_ply_setup_tilted(*m, t, n, wv, w_fibre_mean(m->tilt));
-  w_real pdf;
-  const w_real3 f = w_ply_eval(&s, w, &pdf);
-  const WPlyGradient g = w_ply_gradient(&s, &tilted, m->beta_r, w, f);
-  vstore3(f, 0, out + 15 * i);
-  for (int k = 0; k < W_GRADIENT_COUNT; ++k) vstore3(g.d[k], k + 1, out + 15 * i);
+  const w_v3 t = unit(p), n = unit(p + 3), wv = unit(p + 6), w = unit(p + 9);
+  const WPlyMaterialLanes material = material_of(m);
+  const WPlyShade s = w_ply_setup(&material, t, n, wv);
+  const WPlyShade tilted = w_ply_setup_tilted(&material, t, n, wv, w_fibre_mean_lanes(material.tilt));
+  w_vf pdf;
+  const w_v3 f = w_ply_eval(&s, w, &pdf);
+  const WPlyGradient g = w_ply_gradient(&s, &tilted, material.beta_r, w, f);
+  vstore3(w_v3_lane(&f, 0), 0, out + 15 * i);
+  for (int k = 0; k < W_GRADIENT_COUNT; ++k) vstore3(w_v3_lane(&g.d[k], 0), k + 1, out + 15 * i);
 }
 /* d ln M / dv and ln M for sin_i, sin_o, v. */
 __kernel void slopes(__global const float* in, __global w_real* out, uint count) {

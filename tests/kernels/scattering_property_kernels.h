@@ -25,14 +25,17 @@ static inline w_real3 direction(const Lobe* f, __global const float* in, w_real*
 }
 
 static inline WPlyShade ply_shade(__global const WPlyMaterial* m, __global const float* v) {
-  return w_ply_setup(*m, normalize(vec(v)), normalize(vec(v + 3)), normalize(vec(v + 6)));
+  WPlyMaterialLanes material;
+  for (uint i = 0; i < W_LANES; ++i) w_ply_material_set_lane(&material, i, *m);
+  return w_ply_setup(&material, w_v3_all(normalize(vec(v))), w_v3_all(normalize(vec(v + 3))),
+                     w_v3_all(normalize(vec(v + 6))));
 }
 static inline Lobe ply_lobe(const WPlyShade* s, int lobe) {
   Lobe f;
   const int surface = lobe == W_LOBE_R;
-  f.t = surface ? s->tf : s->t;
-  f.x = surface ? s->xf : s->x;
-  f.y = surface ? s->yf : s->y;
+  f.t = w_v3_lane(surface ? &s->tf : &s->t, 0);
+  f.x = w_v3_lane(surface ? &s->xf : &s->x, 0);
+  f.y = w_v3_lane(surface ? &s->yf : &s->y, 0);
   f.theta = surface ? -atan2(s->sin_vf, s->cos_vf) : -atan2(s->sin_v, s->cos_v);
   f.phi = surface ? atan2(s->sin_n, s->cos_n) : lobe == W_LOBE_F ? s->center_f : s->center_b;
   return f;
@@ -43,7 +46,8 @@ __kernel void ply_samples(__global const WPlyMaterial* m, __global const float* 
   if (i >= count) return;
   const WPlyShade s = ply_shade(m, view);
   const Lobe f = ply_lobe(&s, lobe);
-  angles(&f, w_ply_sample(&s, lobe, u[4 * i], u[4 * i + 1], u[4 * i + 2]), out + 2 * i);
+  const w_v3 w = w_ply_sample(&s, (w_vi)(lobe), w_all(u[4 * i]), w_all(u[4 * i + 1]), w_all(u[4 * i + 2]));
+  angles(&f, w_v3_lane(&w, 0), out + 2 * i);
 }
 __kernel void ply_density(__global const WPlyMaterial* m, __global const float* view, __global const float* in, int lobe,
                           __global w_real* out, uint count) {
@@ -53,7 +57,7 @@ __kernel void ply_density(__global const WPlyMaterial* m, __global const float* 
   const Lobe f = ply_lobe(&s, lobe);
   w_real jacobian;
   const w_real3 w = direction(&f, in + 2 * i, &jacobian);
-  out[i] = jacobian * w_ply_pdf(&s, lobe, w);
+  out[i] = jacobian * w_ply_pdf(&s, lobe, w_v3_all(w));
 }
 
 static inline WFibreShade fibre_shade(__global const WFibreMaterial* m, __global const float* v) {
