@@ -15,7 +15,7 @@ namespace {
 
 using Entry = BinaryTree::Entry;
 
-constexpr uint32_t kBins = 16;
+constexpr uint32_t kBins = 64;
 // So few entries are split at the best place of all, without bins.
 constexpr uint32_t kFew = 8;
 // Subtrees of so many entries are one task. Part of the algorithm, not of the number of threads: nothing depends on it.

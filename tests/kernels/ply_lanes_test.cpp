@@ -10,8 +10,8 @@ namespace wale {
 namespace {
 using namespace test;
 
-// Hit i: t, n, wv, a direction and its fibre, 17 floats; of materials[i % material_count]. Out: lobe, number left, drawn
-// direction, its density and rgb, density and rgb of the given direction, derivative by roughness.
+// Hit i: t, n, wv, a direction and its fibre, 17 floats; of materials[i % material_count]. Out: lobe, number left,
+// drawn direction, its density and rgb, density and rgb of the given direction, derivative by roughness.
 const std::string kHits = std::string("#define W_GRADIENTS\n") + kPlyKernels + R"(
 #include "appearance/ply_gradient.clh"
 static inline void set_unit(w_v3* to, uint i, __global const float* p) {
