@@ -40,7 +40,7 @@ void expect_the_same_on(const Strands& strands, const char* name) {
   const Box& bounds = tracer.tree().bounds;
   expect_the_same(tracer, camera_rays(bounds, 96, 0.8), "wide");
   expect_the_same(tracer, camera_rays(bounds, 96, 0.02), "narrow");
-  // Off the plies towards one light, still neighbours: alone they ask w_ahead first, in packets never.
+  // Off the plies towards one light, still neighbours: alone they ask w_may_meet first, in packets never.
   const std::vector<Ray> narrow = camera_rays(bounds, 96, 0.02);
   const std::vector<Hit> starts = tracer.trace(narrow, kWide);
   const dvec3 light(0.4 * bounds.lo[0] + 0.6 * bounds.hi[0], 0.5 * (bounds.lo[1] + bounds.hi[1]), bounds.lo[2]);

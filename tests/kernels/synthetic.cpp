@@ -19,6 +19,7 @@ constexpr const char* kTrace = R"(
 #if W_LANES == 16
 #include "geometry/traverse_packet.clh"
 #endif
+#include "stages/ask_ahead.clh"
 #define PARAMS __global const uint* nodes, __global const uint* leaves, uint root, __global uint* counters, \
     __global const uint* leaf_boxes
 W_INLINE WScene scene_of(PARAMS) {
@@ -33,6 +34,11 @@ W_INLINE WScene scene_of(PARAMS) {
   s.spheres_count = 0;
   s.counters = counters;
   return s;
+}
+/* As the renderer's stages do. */
+W_INLINE void ask_ahead(const WScene* s, __global const TestRay* rays, uint i, uint count) {
+  const uint skip = rays[min(i + W_STARTS_AHEAD, count - 1u)].skip;
+  if (skip != W_NONE) w_ask_for_whole(s, skip);
 }
 __kernel void trace(PARAMS, __global const TestRay* rays, __global TestHit* hits, uint count) {
   const uint i = get_global_id(0);
@@ -83,6 +89,7 @@ __kernel void closest(PARAMS, __global const TestRay* rays, __global float* out,
   const uint i = get_global_id(0);
   if (i >= count) return;
   const WScene s = scene_of(nodes, leaves, root, counters, leaf_boxes);
+  ask_ahead(&s, rays, i, count);
   const WRay r = ray_of(rays + i);
   const WHit hit = w_closest(&s, &r);
   out[2 * i] = (float)hit.t;
@@ -92,6 +99,7 @@ __kernel void occluded(PARAMS, __global const TestRay* rays, __global float* out
   const uint i = get_global_id(0);
   if (i >= count) return;
   const WScene s = scene_of(nodes, leaves, root, counters, leaf_boxes);
+  ask_ahead(&s, rays, i, count);
   const WRay r = ray_of(rays + i);
   out[i] = w_occluded(&s, &r);
 }
