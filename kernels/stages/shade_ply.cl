@@ -11,7 +11,7 @@
 #include "geometry/ply_surface.clh"
 #include "lights.clh"
 #include "sampling/dimensions.clh"
-#include "sampling/sobol.clh"
+#include "sampling/sobol_lanes.clh"
 #include "stages/ask_ahead.clh"
 #include "stages/continue_path.clh"
 #include "stages/light_args.clh"
@@ -108,19 +108,14 @@ W_CALL void w_shade_plies(const WFrame* frame, W_PATH_PARAMS, const WScene* scen
                           W_DETAIL_PARAMS W_COLOR_PARAMS __global float4* aov, __global const uint* list, uint count,
                           uint depth) {
   WPlyHits hits;
-  WSampler sampler[W_LANES];
-  w_vf u0, u1, u2, u3;
+  WSamplers samplers;
   for (uint i = 0; i < W_LANES; ++i) {
     const uint slot = list[min(i, count - 1u)];
     const WRay ray = w_slot_ray(ray_o, ray_l, ray_d, slot);
     const WHit h = w_slot_hit(hit, hit_uv, slot);
     w_ply_set_hit(scene, frames, &ray, &h, &hits, i);
-    sampler[i] = w_sampler(w_slot_pixel(frame, wave_tiles, slot), w_slot_sample(frame, slot), frame->seed);
-    const float4 u = w_sample4(&sampler[i], W_SET_SCATTER(depth));
-    w_lane_of(u0, i) = u.x;
-    w_lane_of(u1, i) = u.y;
-    w_lane_of(u2, i) = u.z;
-    w_lane_of(u3, i) = u.w;
+    w_samplers_set_lane(
+        &samplers, i, w_sampler(w_slot_pixel(frame, wave_tiles, slot), w_slot_sample(frame, slot), frame->seed));
   }
   const WPlySurfaces surface = w_ply_surfaces(&hits, normals);
   const WPlyLeave from = w_ply_leave(&hits, &surface);
@@ -156,8 +151,9 @@ W_CALL void w_shade_plies(const WFrame* frame, W_PATH_PARAMS, const WScene* scen
     }
 #endif
 
+  const WNumbers u = w_samplers4(&samplers, W_SET_SCATTER(depth));
   w_vf left;
-  const w_vi lobe = w_ply_choose(&shade, u0, &left);
+  const w_vi lobe = w_ply_choose(&shade, u.x, &left);
   uint bins[W_LANES];
   for (uint i = 0; i < count; ++i) bins[i] = 0u;
 
@@ -165,8 +161,10 @@ W_CALL void w_shade_plies(const WFrame* frame, W_PATH_PARAMS, const WScene* scen
   if (frame->light_sampling != 2) {
     WPlyLight lit[W_LANES];
     w_v3 towards = wv;
+    const WNumbers ul = w_samplers4(&samplers, W_SET_LIGHT(depth));
     for (uint i = 0; i < count; ++i) {
-      const float4 u = w_sample4(&sampler[i], W_SET_LIGHT(depth));
+      const float4 u = (float4)((float)w_lane_of(ul.x, i), (float)w_lane_of(ul.y, i), (float)w_lane_of(ul.z, i),
+                                (float)w_lane_of(ul.w, i));
       const w_real3 anchor = w_v3_lane(&hits.p1, i);
       lit[i] = w_ply_light(lights, anchor + w_v3_lane(&from.out, i), anchor + w_v3_lane(&from.middle, i),
                            w_v3_lane(&from.n, i), u, w_lane_of(left, i));
@@ -199,7 +197,7 @@ W_CALL void w_shade_plies(const WFrame* frame, W_PATH_PARAMS, const WScene* scen
   }
 #endif
 
-  const w_v3 w = w_ply_sample(&shade, lobe, u1, u2, u3);
+  const w_v3 w = w_ply_sample(&shade, lobe, u.y, u.z, u.w);
   w_vf density;
   const w_v3 f = w_ply_eval(&shade, w, &density);
   // A direction whose density has underflowed was drawn from the far tail of its lobe: the lobe's own weight is exact.
@@ -222,7 +220,8 @@ W_CALL void w_shade_plies(const WFrame* frame, W_PATH_PARAMS, const WScene* scen
     for (uint k = 0; k < W_GRADIENT_COUNT; ++k)
       score[slot * W_GRADIENT_COUNT + k].xyz += w_float3(w_ply_score(w_v3_lane(&g.d[k], i), w_v3_lane(&f, i)));
 #endif
-    bins[i] |= w_continue(frame, &next, depth, &sampler[i]);
+    const WSampler sampler = w_samplers_lane(&samplers, i);
+    bins[i] |= w_continue(frame, &next, depth, &sampler);
     W_STORE_PATH_RAY(slot, w_v3_lane(&hits.p1, i), w_v3_lane(&offset, i), hit[slot].z, W_NONE, d,
                      w_lane_of(density, i), next)
     mask[slot] = bins[i];

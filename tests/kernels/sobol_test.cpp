@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <set>
 
 #include "tests/kernels/kernel_runner.h"
@@ -47,6 +48,40 @@ TEST(Sobol, EveryScrambleIsANetInItsFirstTwoDimensions) {
         EXPECT_EQ(cells.size(), 256u) << "scramble " << scramble << " set " << set << " columns 2^" << bits;
       }
     }
+}
+
+// Lane l of work-item i: sampler W_LANES i + l, whose index and scramble are any numbers.
+const char* kLanes = R"(
+#undef W_LANES
+#define W_LANES LANES
+#include "sampling/sobol_lanes.clh"
+__kernel void points(__global const uint* in, uint set, __global float* out, uint count) {
+  const uint first = get_global_id(0) * W_LANES;
+  if (first >= count) return;
+  WSamplers samplers;
+  for (uint i = 0; i < W_LANES; ++i) {
+    const WSampler one = {in[2 * (first + i)], in[2 * (first + i) + 1]};
+    w_samplers_set_lane(&samplers, i, one);
+  }
+  const WNumbers u = w_samplers4(&samplers, set);
+  for (uint i = 0; i < W_LANES; ++i)
+    vstore4((float4)(w_lane_of(u.x, i), w_lane_of(u.y, i), w_lane_of(u.z, i), w_lane_of(u.w, i)), first + i, out);
+}
+)";
+
+TEST(Sobol, SideBySideIsAsOneByOne) {
+  std::mt19937 random(3);
+  std::vector<uint32_t> in;
+  for (int i = 0; i < 1600; ++i) in.insert(in.end(), {i < 800 ? uint32_t(i) : uint32_t(random()), uint32_t(random())});
+  std::vector<double> expected[2];
+  for (const std::string lanes : {"1", "8", "16"}) {
+    const KernelRunner runner(kLanes, false, "-DLANES=" + lanes);
+    for (const uint32_t set : {0u, 7u}) {
+      const auto got = runner.run("points", 1600, 4, runner.upload(in), set);
+      if (lanes == "1") expected[set ? 1 : 0] = got;
+      EXPECT_EQ(got, expected[set ? 1 : 0]) << lanes << " lanes, set " << set;
+    }
+  }
 }
 
 TEST(Sobol, EveryDimensionIsStratified) {
