@@ -1,5 +1,5 @@
 // Two versions of the kernels, stage by stage. Usage: stage_compare OLD_KERNELS NEW_KERNELS [segments] [repeats]; needs
-// an OpenCL device. Both folders' kernels take the same arguments. The cloth of wale_bench is rendered with one and the
+// an OpenCL device. Both folders' kernels take the same arguments and as many hits an item (host/stages.cpp). The cloth of wale_bench is rendered with one and the
 // other in turn, each launch waited for: CPU nanoseconds an item over the device's cores, median of the ratios within
 // each turn, and how far apart the pictures are.
 #include <fmt/format.h>

@@ -1,5 +1,6 @@
 #pragma once
 #include <CL/opencl.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <future>
 #include <map>
@@ -68,7 +69,11 @@ class Device {
   /// kernel that is launched in both ways, or nobody knows in which, is compiled once only like this.
   cl::NDRange large_global(size_t items) const { return global(items < kLargeGrid ? kLargeGrid : items); }
   static constexpr size_t kLargeGrid = 65536;
-  cl::NDRange local() const { return cl::NDRange(traits_.local_size); }
+  /// Work-items of a group, of which each takes so many rays or hits: groups hold as many of these, whatever takes
+  /// them, so that many cores share a short list.
+  cl::NDRange local(size_t taken_at_once = 1) const {
+    return cl::NDRange(std::max<size_t>(1, traits_.local_size / taken_at_once));
+  }
 
  private:
   DeviceTraits traits_;

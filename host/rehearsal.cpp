@@ -23,7 +23,7 @@ struct Rehearsal::Part {
   Device device;
   ProgramText text;
   std::vector<std::string> kernels;
-  size_t items = 1;
+  size_t items = 1, taken_at_once = 1;
   bool can_wait = false;
   std::promise<void> done;
 };
@@ -51,13 +51,13 @@ void set_zeros(cl::Kernel& kernel, const cl::Buffer& zeros) {
 }
 
 void build_and_launch(const Device& device, const ProgramText& text, const std::vector<std::string>& kernels,
-                      size_t items) {
+                      size_t items, size_t taken_at_once) {
   const cl::Program program = build_now(device, text);
   const Buffer<uint32_t> zeros(device, std::vector<uint32_t>(1024, 0));
   for (const auto& name : kernels) {
     cl::Kernel kernel(program, name.c_str());
     set_zeros(kernel, zeros.cl());
-    device.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device.global(items), device.local());
+    device.queue().enqueueNDRangeKernel(kernel, cl::NullRange, device.global(items), device.local(taken_at_once));
   }
   device.queue().finish();
 }
@@ -84,6 +84,7 @@ static std::vector<Rehearsal::Part> parts_of(const std::vector<Device>& devices,
       part.kernels = program.kernels;
       part.items = program.before_rays ? Device::kLargeGrid : 1;
       part.can_wait = program.can_wait;
+      part.taken_at_once = program.taken_at_once;
     }
     std::stable_sort(parts.begin() + std::ptrdiff_t(first), parts.end(), [](const auto& a, const auto& b) {
       return std::tuple(b.items, a.can_wait, b.text.source.size()) <
@@ -144,7 +145,7 @@ void Rehearsal::child(const std::string& devices, int report) {
     }
     const std::vector<Part> parts = parts_of(open_devices, plan_);
     for (uint32_t i; (i = shared_->next++) < parts.size();) {
-      build_and_launch(parts[i].device, parts[i].text, parts[i].kernels, parts[i].items);
+      build_and_launch(parts[i].device, parts[i].text, parts[i].kernels, parts[i].items, parts[i].taken_at_once);
       if (write(report, &i, sizeof(i)) != sizeof(i)) _exit(0);
     }
   } catch (const std::exception&) {

@@ -29,10 +29,10 @@ constexpr double kShadowRay = kRay + kVec;
 constexpr double kLeafPart = W_LEAF_HEADER * kWord + 4 * 3 * kWord + 2 * W_FRAME_WORDS * kWord;
 constexpr double kTriangle = 20 * kWord;
 
-// Additions and multiplications of one hit with one light sample, as `oclgrind --inst-counts` counts them (a dot
-// product as five, a fused multiply-add as two), and 20 for each of its 26 exponentials, logarithms and angles
-// (kernels/shared/elementary.clh).
-constexpr double kShadePlyOperations = 1000 + 26 * 20;
+// Additions and multiplications of one hit with one light sample, as `oclgrind --inst-counts` counted them of one hit
+// an item (a dot product as five, a fused multiply-add as two), and 20 for each of its 24 exponentials, logarithms and
+// angles (kernels/shared/elementary.clh).
+constexpr double kShadePlyOperations = 1000 + 24 * 20;
 
 }  // namespace
 
@@ -53,9 +53,8 @@ std::vector<Stage> geometry_stages(const Features& f) {
            .because = "bounds of procedural leaves",
            .before_rays = true},
           {.file = "pack.cl",
-           .kernels = f.quantised_vertices
-                          ? std::vector<std::string>{"measure_leaves", "pack_leaves", "place_leaves"}
-                          : std::vector<std::string>{"pack_leaves", "place_leaves"},
+           .kernels = f.quantised_vertices ? std::vector<std::string>{"measure_leaves", "pack_leaves", "place_leaves"}
+                                           : std::vector<std::string>{"pack_leaves", "place_leaves"},
            .used = f.mesh_warp || f.stored_lattice,
            .because = "leaves and bounds",
            .before_rays = true}};
@@ -83,7 +82,8 @@ std::vector<Stage> wavefront_stages(const Features& f) {
        .because =
            f.packets() ? "nearest hits of camera rays, many at once" : "vectors or local stage do not suit packets",
        .bytes_per_item = kWord + kRay + kVec + kUv + kWord,
-       .can_wait = true},
+       .can_wait = true,
+       .taken_at_once = size_t(f.lanes)},
       {.file = "stages/compact.cl",
        .kernels = {"compact_count", "compact_scan", "compact_scatter"},
        .because = "queues",
@@ -94,12 +94,13 @@ std::vector<Stage> wavefront_stages(const Features& f) {
        .because = f.environment ? "paths that leave gather the environment" : "paths that leave end",
        .bytes_per_item = 2 * kWord + (f.environment ? 4 * kVec : 0),
        .program = paths},
-      {"stages/shade_ply.cl",
-       {"shade_ply"},
-       f.plies,
-       f.plies ? "plies" : "no ply is shown",
-       shade + kLeafPart,
-       kShadePlyOperations},
+      {.file = "stages/shade_ply.cl",
+       .kernels = {"shade_ply"},
+       .used = f.plies,
+       .because = f.plies ? "plies" : "no ply is shown",
+       .bytes_per_item = shade + kLeafPart,
+       .operations_per_item = kShadePlyOperations,
+       .taken_at_once = size_t(f.lanes)},
       {"stages/shade_fibre.cl",
        {"shade_fibre"},
        f.fibres,
@@ -124,7 +125,9 @@ std::vector<Stage> wavefront_stages(const Features& f) {
       {"stages/accumulate_aov.cl",
        {"accumulate_aov"},
        f.four_vectors(),
-       f.gradients ? "derivative images" : f.aovs ? "feature images" : "no .exr is written",
+       f.gradients ? "derivative images"
+       : f.aovs    ? "feature images"
+                   : "no .exr is written",
        3 * features},
   };
 }
@@ -135,7 +138,8 @@ std::vector<StageProgram> programs_of(const std::vector<Stage>& stages, bool tog
     if (!stage.used) continue;
     const std::string& file = together && !stage.program.empty() ? stage.program : stage.file;
     auto program = std::find_if(programs.begin(), programs.end(), [&](const auto& p) { return p.file == file; });
-    if (program == programs.end()) program = programs.insert(program, {file, {}, stage.before_rays, stage.can_wait});
+    if (program == programs.end())
+      program = programs.insert(program, {file, {}, stage.before_rays, stage.can_wait, stage.taken_at_once});
     program->kernels.insert(program->kernels.end(), stage.kernels.begin(), stage.kernels.end());
   }
   return programs;

@@ -12,11 +12,12 @@ struct Stage {
   std::vector<std::string> kernels;
   bool used = true;
   std::string because;
-  double bytes_per_item = 0;  ///< of path state, lists and stored geometry that an item reads and writes
+  double bytes_per_item = 0;       ///< of path state, lists and stored geometry that an item reads and writes
   double operations_per_item = 0;  ///< of floats; 0: not counted
-  bool before_rays = false;  ///< runs once, on the scene's geometry; has no variants
-  std::string program = {};  ///< file that includes this one and others like it, where they are compiled together
-  bool can_wait = false;     ///< another stage does its work, as well but slower, until it is compiled
+  bool before_rays = false;        ///< runs once, on the scene's geometry; has no variants
+  std::string program = {};        ///< file that includes this one and others like it, where they are compiled together
+  bool can_wait = false;           ///< another stage does its work, as well but slower, until it is compiled
+  size_t taken_at_once = 1;        ///< rays or hits that one work-item takes
 };
 
 /// What makes the scene's plies ready to be traced.
@@ -30,6 +31,7 @@ struct StageProgram {
   std::string file;  ///< below kernels/
   std::vector<std::string> kernels;
   bool before_rays = false, can_wait = false;  ///< as Stage
+  size_t taken_at_once = 1;
 };
 
 /// Most programs that one render compiles for a device: one of each stage. All that differs between two scenes of the

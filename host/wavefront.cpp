@@ -50,11 +50,12 @@ Wavefront::Wavefront(const Device& device, const SceneDevice& scene, const Featu
   build_programs();
 }
 
-void Wavefront::launch(const std::string& name, size_t items, bool camera_rays) {
+void Wavefront::launch(const std::string& name, size_t count, bool camera_rays) {
   cl::Event event;
   const std::clock_t start = std::clock();
-  device_.queue().enqueueNDRangeKernel(kernel(name), cl::NullRange, device_.global(items), device_.local(), nullptr,
-                                       &event);
+  const size_t at_once = taken_at_once_.at(name);
+  device_.queue().enqueueNDRangeKernel(kernel(name), cl::NullRange, device_.global((count + at_once - 1) / at_once),
+                                       device_.local(at_once), nullptr, &event);
   if (count_cpu_time_) device_.queue().finish();
   pending_.push_back({name, event, camera_rays, double(std::clock() - start) / CLOCKS_PER_SEC});
 }
@@ -62,7 +63,7 @@ void Wavefront::launch(const std::string& name, size_t items, bool camera_rays) 
 void Wavefront::launch_intersect(const Buffer<uint32_t>& list, uint32_t count_index, uint32_t depth, size_t bound) {
   auto& k = kernel(nearest(depth));
   set_args(k, k.getInfo<CL_KERNEL_NUM_ARGS>() - 4, list.cl(), queue_counts_.cl(), count_index, depth);
-  launch(nearest(depth), in_packets(depth) ? bound / size_t(features_.lanes) + 1 : bound, depth == 0);
+  launch(nearest(depth), bound, depth == 0);
 }
 
 void Wavefront::launch_connect(uint32_t count_index, uint32_t depth, size_t bound) {
@@ -120,7 +121,7 @@ void Wavefront::trace(WFrame frame, const std::vector<uint32_t>& tiles, uint32_t
     for (const char* name : {"shade_ply", "shade_fibre", "shade_surface"})
       if (const auto found = kernels_.find(name); found != kernels_.end()) {
         found->second.setArg(found->second.getInfo<CL_KERNEL_NUM_ARGS>() - 1, depth);
-        launch(name, std::string_view(name) == "shade_ply" ? bound / size_t(features_.lanes) + 1 : bound);
+        launch(name, bound);
       }
     const uint32_t shaded = kShaded[side];
     compact(live, count_index, shaded, bound, active_[1 - side], shadow_list_, spare_list_);

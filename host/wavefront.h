@@ -74,7 +74,7 @@ class Wavefront {
   void take_packets();
   std::string options_;  ///< that the programs were built with
   cl::Kernel& kernel(const std::string& name) { return kernels_.at(name); }
-  void launch(const std::string& name, size_t items, bool camera_rays = false);
+  void launch(const std::string& name, size_t count, bool camera_rays = false);
   bool in_packets(uint32_t depth) const { return depth == 0 && kernels_.contains("intersect_packets"); }
   /// Kernel that finds the nearest hits at this depth.
   const char* nearest(uint32_t depth) const { return in_packets(depth) ? "intersect_packets" : "intersect"; }
@@ -97,6 +97,7 @@ class Wavefront {
   uint32_t pool_;
   uint64_t bytes_ = 0;
   std::map<std::string, cl::Kernel> kernels_;
+  std::map<std::string, size_t> taken_at_once_;  ///< by kernel, as Stage
   struct Launch {
     std::string kernel;
     cl::Event event;

@@ -43,6 +43,8 @@ void Wavefront::take_packets() {
 void Wavefront::build_programs() {
   options_ = features_.options() + scene_->options();
   auto programs = programs_of(wavefront_stages(features_), device_.traits().compiles_at_launch);
+  for (const StageProgram& program : programs)
+    for (const auto& name : program.kernels) taken_at_once_[name] = program.taken_at_once;
   const auto wait = std::find_if(programs.begin(), programs.end(), [&](const StageProgram& program) {
     return program.can_wait && is_being_compiled(device_, program.file, options_, kernel_dir_);
   });

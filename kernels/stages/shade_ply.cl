@@ -63,7 +63,7 @@ static inline WFibreAt w_fibre_of_hit(const WPlySurface* s, W_DETAIL_PARAMS w_re
 /* Offset from the anchor at which a direction leaves: the hit moved out by a few ulps, for those on the outer side
    of n, or the chord's middle. */
 typedef struct WPlyLeave {
-  w_v3 n, out, middle;
+  w_v3 out, middle;
 } WPlyLeave;
 
 static inline WPlyLeave w_ply_leave(const WPlyHits* hits, const WPlySurfaces* s) {
@@ -71,7 +71,6 @@ static inline WPlyLeave w_ply_leave(const WPlyHits* hits, const WPlySurfaces* s)
   const w_v3 d = hits->d;
   const w_v3 radial = w_v3_fma(-w_v3_dot(s->x, s->t), s->t, s->x);
   const w_vf along = w_v3_dot(d, s->t), sin2 = w_max(R(1.0) - along * along, w_all(R(1e-6)));
-  from.n = s->n;
   from.out = w_v3_fma(w_all(R(9.5367432e-7)), radial, s->x);  // 4 * 2^-22: beyond the error of the hit
   from.middle = w_v3_fma(hits->radius * w_root(R(1.0) - hits->h * hits->h) / sqrt(sin2), d, s->x);
   return from;
@@ -163,11 +162,11 @@ W_CALL void w_shade_plies(const WFrame* frame, W_PATH_PARAMS, const WScene* scen
     w_v3 towards = wv;
     const WNumbers ul = w_samplers4(&samplers, W_SET_LIGHT(depth));
     for (uint i = 0; i < count; ++i) {
-      const float4 u = (float4)((float)w_lane_of(ul.x, i), (float)w_lane_of(ul.y, i), (float)w_lane_of(ul.z, i),
-                                (float)w_lane_of(ul.w, i));
+      const float4 at = (float4)((float)w_lane_of(ul.x, i), (float)w_lane_of(ul.y, i), (float)w_lane_of(ul.z, i),
+                                 (float)w_lane_of(ul.w, i));
       const w_real3 anchor = w_v3_lane(&hits.p1, i);
       lit[i] = w_ply_light(lights, anchor + w_v3_lane(&from.out, i), anchor + w_v3_lane(&from.middle, i),
-                           w_v3_lane(&from.n, i), u, w_lane_of(left, i));
+                           w_v3_lane(&surface.n, i), at, w_lane_of(left, i));
       w_v3_set_lane(&towards, i, lit[i].light.direction);
     }
     w_vf density;
@@ -211,7 +210,7 @@ W_CALL void w_shade_plies(const WFrame* frame, W_PATH_PARAMS, const WScene* scen
 #ifdef W_GRADIENTS
   const WPlyGradient g = w_ply_gradient(&shade, &tilted, material.beta_r, w, f);
 #endif
-  const w_v3 offset = w_v3_select(from.middle, from.out, w_lt(w_all(R(0.0)), w_v3_dot(w, from.n)));
+  const w_v3 offset = w_v3_select(from.middle, from.out, w_lt(w_all(R(0.0)), w_v3_dot(w, surface.n)));
   for (uint i = 0; i < count; ++i) {
     const uint slot = list[i];
     const w_real3 d = w_v3_lane(&w, i);

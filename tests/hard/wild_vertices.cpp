@@ -35,7 +35,7 @@ __kernel void every_leaf(__global const uint* leaves, __global const uint* offse
   hit.kind = W_HIT_NONE;
   hit.code = W_NONE;
   for (uint leaf = 0; leaf < leaf_count; ++leaf)
-    w_leaf_plies(&s, &r, offsets[leaf], 0xffffu, 0, W_NEIGHBOUR_NONE, &hit, 0);
+    w_leaf_plies(&s, &r, offsets[leaf], 0xffffu, 0, &hit, 0, w_is_unit(&r));
   out[i] = hit.t;
 }
 )";

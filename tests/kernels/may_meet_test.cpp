@@ -10,7 +10,8 @@ namespace {
 using namespace test;
 
 // Case: p0 .. p3, o, l, d, radius, behind, 23 floats. Out: 1 where the exact test meets it, or counts a ray along the
-// axis, 1 where the early one may. In every second case entries count from the last number below the entry on.
+// axis, 1 where the early one may. In every second case entries count from the last number below the entry on; in every
+// third both ends are cut square.
 const char* kKernels = R"(
 #include "geometry/ply_segment.clh"
 static inline w_v3 at(__global const float* p) { return w_v3_all(w_load3(0, p)); }
@@ -20,12 +21,15 @@ __kernel void both(__global const float* in, __global w_real* out, uint count) {
   __global const float* p = in + 23 * (size_t)i;
   const WPlyEdge edge = w_ply_edge(at(p + 3), at(p + 6), at(p + 12), at(p + 15));
   const w_v3 d = at(p + 18);
+  const uint cuts = i % 3u == 0u ? 0x10001u : 0u;
   WPlyLanes found;
-  uint met = w_ply_lanes(at(p), at(p + 3), at(p + 6), at(p + 9), &edge, p[21], d, p[22], W_MISS, 1u, 0u, 0u, 0u, &found);
+  uint met =
+      w_ply_lanes(at(p), at(p + 3), at(p + 6), at(p + 9), &edge, p[21], d, p[22], W_MISS, 1u, cuts, 0u, 0u, &found);
   float behind = p[22];
   if (met && (i & 1u)) {
     behind = as_float(as_int(found.t) + (found.t > 0.0f ? -1 : 1));
-    met = w_ply_lanes(at(p), at(p + 3), at(p + 6), at(p + 9), &edge, p[21], d, behind, W_MISS, 1u, 0u, 0u, 0u, &found);
+    met =
+        w_ply_lanes(at(p), at(p + 3), at(p + 6), at(p + 9), &edge, p[21], d, behind, W_MISS, 1u, cuts, 0u, 0u, &found);
   }
   out[2 * i] = met | found.along;
   out[2 * i + 1] = w_mask_bits(w_may_meet(&edge, p[21], d, behind));
@@ -36,7 +40,8 @@ struct Share {
   double met = 0, may = 0, lost = 0;
 };
 
-// Rays towards points on or near a segment's surface (`miss` radii off the axis), started up to `far` radii before it.
+// Rays towards points on or near a segment's surface (`miss` radii off the axis), as far along as a mitre of 120
+// degrees reaches, started up to `far` radii before it, with directions that are unit to 9e-7.
 Share shares(const KernelRunner& runner, double length, double far, double miss, double slant, uint32_t seed) {
   constexpr size_t kCount = 60000;
   Random random(seed);
@@ -45,17 +50,24 @@ Share shares(const KernelRunner& runner, double length, double far, double miss,
   for (size_t i = 0; i < kCount; ++i) {
     const double r = std::pow(10, random.uniform(-6, 0)), l = r * length * random.uniform(0.2, 1);
     const dvec3 axis = random.direction(), middle = 10 * r * random.direction();
-    const auto bent = [&] { return glm::normalize(axis + random.uniform(0, 1) * random.direction()); };
+    const auto bent = [&] {
+      const double bend = random.uniform(0, 120) * M_PI / 180;
+      return std::cos(bend) * axis + std::sin(bend) * glm::normalize(glm::cross(axis, random.direction()));
+    };
     const dvec3 p1 = middle - 0.5 * l * axis, p2 = middle + 0.5 * l * axis, p0 = p1 - l * bent(), p3 = p2 + l * bent();
     const dvec3 side = glm::normalize(glm::cross(axis, random.direction()));
-    const dvec3 target = middle + random.uniform(-0.8, 0.8) * l * axis + r * random.uniform(0, miss) * side;
+    const dvec3 target =
+        middle + random.uniform(-1, 1) * (0.5 * l + 1.7321 * r) * axis + r * random.uniform(0, miss) * side;
     // From along the axis (slant 0) to any direction (1).
-    const dvec3 d = glm::normalize(axis * (random.uniform() < 0.5 ? 1.0 : -1.0) + slant * 3 * random.direction());
+    const dvec3 d = glm::normalize(axis * (random.uniform() < 0.5 ? 1.0 : -1.0) + slant * 3 * random.direction()) *
+                    (1 + random.uniform(-4.5e-7, 4.5e-7));
     const double way = r * far * random.uniform(-0.3, 1);
     const dvec3 start = target - way * d, offset = 0.5 * r * random.direction();
     for (const dvec3& v : {p0, p1, p2, p3, start - offset, offset, d}) append(&in, v);
     in.push_back(float(r));
-    in.push_back(float(random.uniform() < 0.5 ? -0.2 * way : 0.0));  // from where the ray starts, before or at o + l
+    // From where the ray starts, before or at o + l, or from a camera far away.
+    const double kind = random.uniform();
+    in.push_back(float(kind < 0.4 ? -0.2 * way : kind < 0.8 ? 0.0 : -1e5 * r));
   }
   const auto out = runner.run("both", kCount, 2, runner.upload(in));
   Share share;
