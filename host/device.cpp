@@ -1,6 +1,7 @@
 #include "host/device.h"
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <cstdlib>
 #include <numeric>
@@ -10,7 +11,10 @@
 namespace wale {
 namespace {
 
+std::atomic<bool> asked{false};
+
 std::vector<cl::Device> all_devices() {
+  asked = true;
   std::vector<cl::Device> devices;
   std::vector<cl::Platform> platforms;
   try {
@@ -92,6 +96,8 @@ std::vector<cl::Device> require_devices() {
 }
 
 }  // namespace
+
+bool Device::asked_before() { return asked; }
 
 std::vector<DeviceTraits> Device::list() {
   std::vector<DeviceTraits> traits;

@@ -54,6 +54,8 @@ class Device {
   /// or a user error that lists the valid numbers.
   static Device open(unsigned index = 0);
   static std::vector<DeviceTraits> list();
+  /// Whether this process has asked for devices before: drivers' threads do not outlive a fork.
+  static bool asked_before();
 
   const DeviceTraits& traits() const { return traits_; }
   DeviceTraits& traits() { return traits_; }

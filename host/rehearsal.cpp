@@ -113,7 +113,8 @@ Rehearsal::Rehearsal(const std::string& devices, PlanOf plan) : plan_(std::move(
   if (!KernelNote::cache_is_used()) return;  // what children compile would be lost
   note_ = KernelNote(what_is_compiled(devices, plan_));
   cached_ = note_->found();
-  if (!cached_) fork_children(devices);
+  // A child of a process whose driver runs already would wait for that driver's threads for ever.
+  if (!cached_ && !Device::asked_before()) fork_children(devices);
 }
 
 void Rehearsal::fork_children(const std::string& devices) {

@@ -32,8 +32,8 @@ class Rehearsal {
   };
   using PlanOf = std::function<Plan(const DeviceTraits&)>;
 
-  /// `devices` as device_numbers() reads it. May fork: must come before the process's first call of OpenCL and its
-  /// first thread. What fails is left to whoever needs the program.
+  /// `devices` as device_numbers() reads it. Forks, and gains by it, only before the process's first call of OpenCL; must
+  /// come before its first thread. What fails is left to whoever needs the program.
   Rehearsal(const std::string& devices, PlanOf plan);
   /// Builds in the devices' own contexts, on threads, what the children have compiled, or what other drivers compile.
   void begin(const std::vector<Device>& devices);

@@ -1,10 +1,14 @@
 // What a start compiles, and what it finds compiled.
+#include <sys/wait.h>
+
+#include <cerrno>
 #include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "cli_fixture.h"
 #include "host/kernel_note.h"
+#include "host/rehearsal.h"
 
 namespace wale::test {
 namespace {
@@ -59,6 +63,17 @@ class KernelNotes : public testing::Test {
   TemporaryFolder folder_;
   std::map<std::string, std::string> before_;
 };
+
+// It would wait for the driver's threads, which it has not, and its parent for it.
+TEST_F(KernelNotes, AProcessWhoseDriverRunsHasNoChildrenCompile) {
+  const Device device = Device::open();
+  const Rehearsal rehearsal("0", [](const DeviceTraits&) {
+    return Rehearsal::Plan{wavefront_stages({}), Features().options(), {}};
+  });
+  EXPECT_FALSE(rehearsal.cached());
+  EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
+  EXPECT_EQ(errno, ECHILD);
+}
 
 TEST_F(KernelNotes, AreOfTheirProgramsAlone) {
   const KernelNote one("one"), other("other");
