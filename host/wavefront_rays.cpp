@@ -50,20 +50,22 @@ void Wavefront::load(const RayBatch& batch) {
   scatter(shadow ? shadow_l_ : ray_l_, batch.l);
   scatter(shadow ? shadow_d_ : ray_d_, batch.d);
   // One kind of light for every ray: what arrives is 1 where nothing is in the way.
-  if (shadow) scatter(shadow_c_, std::vector<w_float4>(batch.slots.size(), w_float4{1, 1, 1, 0}));
+  if (shadow) {
+    scatter(shadow_c_, std::vector<w_float4>(batch.slots.size(), w_float4{1, 1, 1, 0}));
+    radiance_.fill(device_, w_float4{0, 0, 0, 0});
+  }
   tiles_.write(device_, batch.tiles);
   (shadow ? shadow_list_ : active_[0]).write(device_, batch.slots);
   queue_counts_.write(device_, {uint32_t(batch.slots.size())});
   set_frame(batch.frame);
+  device_.queue().finish();
 }
 
 double Wavefront::trace_loaded(const RayBatch& batch) {
-  if (batch.kind == RayKind::shadow) {
-    radiance_.fill(device_, w_float4{0, 0, 0, 0});
+  if (batch.kind == RayKind::shadow)
     launch_connect(kGenerated, batch.depth, batch.slots.size());
-  } else {
+  else
     launch_intersect(active_[0], kGenerated, batch.depth, batch.slots.size());
-  }
   device_.queue().finish();
   const double seconds = device_seconds(pending_.back().event);
   pending_.clear();
